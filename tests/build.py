@@ -9,6 +9,41 @@ from tests.wire import select
 
 Json = dict[str, Any]
 
+TURNING: Json = {
+    "mechanism": {
+        "type": "rotary",
+        "inertia_kgm2": 0.8,
+        "gravity_mass_kg": 12.0,
+        "gravity_radius_mm": 250.0,
+        "friction_torque_Nm": 1.5,
+        "efficiency": 0.9,
+    },
+    "start_deg": 0.0,
+    "moves": [
+        {"profile": "trapezoidal", "angle_deg": 90.0, "time_s": 0.8, "acceleration_deg_per_s2": 900.0, "name": "turn"},
+        {"profile": "dwell", "time_s": 0.4, "external_torque_Nm": 30.0},
+        {"profile": "s_curve", "angle_deg": -90.0, "time_s": 1.0, "speed_rpm": 25.0, "jerk_share": 0.5},
+    ],
+}
+LIFTING: Json = {
+    "mechanism": {
+        "type": "ball_screw",
+        "mass_kg": 80.0,
+        "lead_mm": 10.0,
+        "incline_deg": 30.0,
+        "inertia_kgm2": 0.002,
+        "friction_force_N": 24.5,
+        "friction_torque_Nm": 0.8,
+        "counterweight_kg": 30.0,
+    },
+    "moves": [
+        {"profile": "modified_sine", "distance_mm": 500.0, "time_s": 1.2, "external_force_N": 200.0},
+        {"profile": "triangular", "distance_mm": -500.0, "speed_mm_per_s": 800.0},
+        {"profile": "s_curve", "distance_mm": 200.0, "time_s": 1.0, "jerk_mm_per_s3": 20000.0},
+    ],
+}
+"""Motions of a rotary and of a linear mechanism."""
+
 
 def phase(torque_Nm: float, speed_rpm: float, duration_s: float = 1.0, **loads: float) -> Json:
     """One phase as JSON."""

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from hpn.application import WORKED_EXAMPLE
-from hpn.web.api.samples import TURNING
+from tests.build import TURNING
 from tests.operations.service import Service, serving
 
 ROOT = Path(__file__).parents[2]

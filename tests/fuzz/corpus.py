@@ -17,13 +17,12 @@ from hpn.engine.selection import select
 from hpn.files.export import Export
 from hpn.files.workbook.workbook import workbook
 from hpn.fleet.columns import COLUMNS as FLEET
-from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.labels import LABELS
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.web.pages.transfer import write_table
 from hpn.words.reader import Reader
-from tests.build import cycle, phase, worked_example
+from tests.build import LIFTING, TURNING, cycle, phase, worked_example
 from tests.fleet.tables import in_long_form, row_of, write
 
 Json = dict[str, Any]

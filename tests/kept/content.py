@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from hpn.web.api.samples import LIFTING, TURNING
-from tests.build import Json, cycle, phase, worked_example
+from tests.build import LIFTING, TURNING, Json, cycle, phase, worked_example
 
 FEW: Json = {"sizes": ["14A", "20A", "32A", "40A"], "ratios": [5]}
 """Requirement that leaves four gears: one that fails, two that suit and one that isn’t rated in most answers."""

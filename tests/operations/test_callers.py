@@ -35,7 +35,7 @@ def paste(client: httpx.Client, content: bytes, path: str = "/paste", name: str 
 
 
 def slow_lines(client: httpx.Client, enough: threading.Event) -> httpx.Response:
-    """Answer to a stream that lasts until it is enough."""
+    """Answer to lines that come until it is enough."""
 
     def drip() -> Iterator[bytes]:
         while not enough.is_set():
@@ -67,7 +67,7 @@ POOLS = {
         lambda client, _: client.post(BATCH, content=ITEMS, headers={"Content-Type": "application/json"}),
         lambda client: client.post(BATCH, json={"applications": [worked_example()]}),
     ),
-    "streams": Trial(slow_lines, lambda client: client.post(BATCH, content=iter([LINE]), headers=LINES)),
+    "lines": Trial(slow_lines, lambda client: client.post(BATCH, content=iter([LINE]), headers=LINES)),
     "files read": Trial(
         lambda client, _: paste(client, WORKBOOKS["defined names"](), name="a.xlsx"),
         lambda client: paste(client, b"T;n;t\n1;2;3\n"),

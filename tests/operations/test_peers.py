@@ -19,7 +19,7 @@ from tests.operations.service import Service, serving
 SMALL = worked_example(requirements={"ratios": [5]})
 IMPATIENT = {"HPN_BODY_SECONDS": "3", "HPN_TRUSTED_PROXIES": "*"}
 SHORT = {
-    "alone": ("body that drips, read by its handler", "streamed batch that drips blanks"),
+    "alone": ("body that drips, read by its handler", "lines that drip"),
     "nginx": (
         "head that drips",
         "body that drips, read by its handler",

@@ -1,7 +1,5 @@
 """nginx as docker-compose.yml puts it in front: TLS, headers, sizes, and what it passes on."""
 
-import http.client
-import json
 import os
 import re
 import signal
@@ -10,7 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, closing
+from contextlib import ExitStack
 from typing import Any
 
 import httpx
@@ -175,31 +173,13 @@ def test_a_head_that_is_too_large_is_refused_as_a_problem(client: httpx.Client) 
     assert "Retry-After" not in answer.headers
 
 
-def test_a_stream_of_lines_has_no_bound_and_is_answered_line_by_line(proxy: Proxy) -> None:
-    context, blank = proxy.trust(), b" " * 1_000_000 + b"\n"
-    with closing(http.client.HTTPSConnection("localhost", proxy.https, timeout=60, context=context)) as connection:
-        connection.putrequest("POST", BATCH)
-        connection.putheader("Content-Type", "application/x-ndjson; charset=utf-8")
-        connection.putheader("Transfer-Encoding", "chunked")
-        connection.endheaders(chunk(LINE))
-        with connection.getresponse() as response:
-            for _ in range(34):
-                assert json.loads(response.readline())["selected"] == "HPN-20A-5"
-                connection.send(chunk(blank + LINE))
-            connection.send(b"0\r\n\r\n")
-            assert len(response.read().splitlines()) == 1
-
-
-def test_a_file_of_lines_is_answered_whole_although_it_comes_faster_than_it_is_judged(client: httpx.Client) -> None:
+@pytest.mark.parametrize("length", ["known", "unknown"])
+def test_lines_may_be_more_than_a_batch_of_json_has(length: str, client: httpx.Client) -> None:
     blank = b" " * 1_000_000 + b"\n"
-    answer = client.post(BATCH, content=blank * 33 + LINE, headers={"Content-Type": "application/x-ndjson"})
+    content = blank * 33 + LINE if length == "known" else iter([*[blank] * 33, LINE])
+    answer = client.post(BATCH, content=content, headers={"Content-Type": "application/x-ndjson; charset=utf-8"})
 
     assert answer.json()["selected"] == "HPN-20A-5"
-
-
-def chunk(piece: bytes) -> bytes:
-    """A piece of a body in chunks."""
-    return b"%x\r\n%b\r\n" % (len(piece), piece)
 
 
 def test_a_batch_of_lines_too_many_is_told_so(client: httpx.Client, proxy: Proxy) -> None:

@@ -32,7 +32,7 @@ def test_without_the_service_the_answer_says_to_come_again(alone: Proxy) -> None
     ("status", "method", "path", "headers"),
     [
         (404, "GET", "/.problem", {}),
-        (404, "POST", "/.stream", {}),
+        (404, "POST", "/.lines", {}),
         (404, "POST", "/paste%0a", {}),
         (405, "TRACE", "/", {}),
         (413, "POST", "/", {"Content-Type": "application/json"}),

@@ -59,21 +59,23 @@ def test_a_client_that_sends_all_before_it_reads_gets_all(service: Service) -> N
 
 
 @contextmanager
-def batch_under_way(service: Service) -> Iterator[tuple[http.client.HTTPConnection, http.client.HTTPResponse]]:
-    """A streamed batch whose first line is answered, and whose end is still to come."""
+def batch_under_way(service: Service) -> Iterator[http.client.HTTPConnection]:
+    """A batch of lines whose body the service waits for."""
     connection = http.client.HTTPConnection("127.0.0.1", service.port, timeout=60)
     connection.putrequest("POST", f"{SELECT}/batch")
     connection.putheader("Content-Type", "application/x-ndjson")
     connection.putheader("Transfer-Encoding", "chunked")
-    connection.endheaders(CHUNK)
-    with closing(connection), connection.getresponse() as response:
-        assert json.loads(response.readline())["selected"] == "HPN-20A-5"
-        yield connection, response
+    connection.putheader("Expect", "100-continue")
+    connection.endheaders()
+    with closing(connection):
+        assert connection.sock.recv(100).startswith(b"HTTP/1.1 100")
+        connection.send(CHUNK)
+        yield connection
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_running_requests_finish_before_the_end_and_nothing_more_is_taken(tmp_path: Path, workers: str) -> None:
-    with serving(tmp_path, {"HPN_WORKERS": workers}) as service, batch_under_way(service) as (connection, response):
+    with serving(tmp_path, {"HPN_WORKERS": workers}) as service, batch_under_way(service) as connection:
         service.terminate()
         wait_until_closed(service)
         for _ in range(20):
@@ -81,8 +83,8 @@ def test_running_requests_finish_before_the_end_and_nothing_more_is_taken(tmp_pa
             time.sleep(0.05)
         connection.send(b"0\r\n\r\n")
 
-        rest = response.read().splitlines()
-        assert [json.loads(line)["selected"] for line in rest] == ["HPN-20A-5"] * 20
+        with connection.getresponse() as response:
+            assert [json.loads(line)["selected"] for line in response] == ["HPN-20A-5"] * 21
         assert service.process.wait(timeout=30) in ENDED
 
 

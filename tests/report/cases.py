@@ -12,10 +12,9 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import Selection, encode, select
 from hpn.files import export
-from hpn.web.api.samples import LIFTING, TURNING
 from hpn.web.form.link_writer import to_link
 from hpn.words.reader import Reader
-from tests.build import Json, cycle, phase, worked_example
+from tests.build import LIFTING, TURNING, Json, cycle, phase, worked_example
 from tests.wire import candidate_of
 
 CREATED = datetime(2026, 11, 21, 10, 15, tzinfo=UTC)

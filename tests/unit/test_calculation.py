@@ -9,9 +9,8 @@ from hpn.explain.calculation import Step, calculation_of
 from hpn.explain.calculation.formula import Constant, Term, Variable, value_of
 from hpn.explain.calculation.mathml import in_symbols, mathml, substituted
 from hpn.explain.calculation.motor import OWN as OWN_FIGURES
-from hpn.web.api.samples import LIFTING, TURNING
 from hpn.words.reader import Reader
-from tests.build import Json, cycle, phase, worked_example
+from tests.build import LIFTING, TURNING, Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 
 

@@ -5,9 +5,8 @@ import re
 from starlette.testclient import TestClient
 
 from hpn.files.export import DIGITS
-from hpn.web.api.samples import TURNING
 from hpn.web.pages.saved import NAMES, phase_of
-from tests.build import Json, cycle, phase
+from tests.build import TURNING, Json, cycle, phase
 
 
 def saved(api: TestClient, motion: Json, **parts: Json) -> str:

@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.web.api.samples import LIFTING, TURNING
-from tests.build import worked_example
+from tests.build import LIFTING, TURNING, worked_example
 from tests.web.test_openapi import FULL
 from tests.web.test_openapi_truth import Json, Path, operations, with_value
 

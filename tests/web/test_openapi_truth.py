@@ -97,44 +97,6 @@ def test_every_link_leads_to_an_operation_with_such_a_parameter(document: Json) 
     assert followed > 10
 
 
-# --- Examples ---------------------------------------------------------------------------------------------------------
-
-
-def test_an_example_gives_the_answer_that_stands_beside_it(api: TestClient, document: Json) -> None:
-    compared = []
-    for method, path, operation in operations(document):
-        address = path.format(**{entry["name"]: entry.get("example", "") for entry in operation.get("parameters", ())})
-        for status, response in operation["responses"].items():
-            for media_type, content in response.get("content", {}).items():
-                for name, example in content.get("examples", {}).items():
-                    answer = asked(api, method, address, operation, media_type, name)
-                    shown = answer.text if media_type.endswith("ndjson") else answer.json()
-                    assert (answer.status_code, shown) == (int(status), example["value"]), (path, name)
-                    compared.append((operation["operationId"], name))
-    assert compared == [
-        ("select", "worked_example"),
-        ("select", "no_duration"),
-        ("selectBatch", "worked_example"),
-        ("selectBatch", "two_lines"),
-        ("getGear", "first_gear"),
-        ("getBearingEnvelopes", "first_size"),
-    ]
-
-
-def asked(api: TestClient, method: str, address: str, operation: Json, media_type: str, name: str) -> Any:
-    """Answer to the request that stands as an example."""
-    bodies = operation.get("requestBody", {}).get("content", {})
-    if media_type.endswith("ndjson"):
-        lines = bodies[media_type]["examples"][name]["value"]
-        return api.request(method, address, content=lines, headers={"Content-Type": media_type})
-    if not bodies:
-        return api.request(method, address)
-    body = bodies["application/json"]["examples"]["worked_example"]["value"]
-    if name == "no_duration":
-        body = with_value(body, ("duty_cycle", "phases", 0, "duration_s"), 0)
-    return api.request(method, address, json=body)
-
-
 def test_every_content_type_of_a_body_is_taken_and_no_other(api: TestClient, document: Json) -> None:
     patched = set()
     for method, address, operation in operations(document):

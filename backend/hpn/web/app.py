@@ -25,10 +25,10 @@ from hpn.web.api import (
     schemas,
     select,
     selections,
-    streaming,
 )
 from hpn.web.door import problems, readers
 from hpn.web.door.access import Gate
+from hpn.web.door.bodies import NDJSON
 from hpn.web.door.codings import Packing
 from hpn.web.door.disk import Disk
 from hpn.web.door.heads import Heads
@@ -79,7 +79,7 @@ CORS: dict[str, Any] = {
 UNPACKED = (
     *DEFAULT_EXCLUDED_CONTENT_TYPES,
     *(file.media_type for file in files.FILES),
-    *streaming.MEDIA_TYPES,
+    *NDJSON,
     *fleet.MEDIA_TYPES.values(),
 )
 """Kinds of content that are not compressed on their way: compressed already, or lines that must not wait."""

@@ -207,8 +207,8 @@ class Settings(BaseSettings):
     body_seconds: float = Field(
         30.0,
         gt=0,
-        description="Longest time for a body, or a line of a streamed batch, to arrive, and for the client of one to "
-        "leave its answers unread.",
+        description="Longest time for a body to arrive, and for the client of a batch of lines to leave its answers "
+        "unread.",
     )
     batch_seconds: float = Field(60.0, gt=0, description="Longest computing time of one batch request.")
     maximum_fleet_bytes: int = Field(200_000_000, gt=0, description="Largest body of a request for a fleet.")
@@ -226,14 +226,14 @@ class Settings(BaseSettings):
     )
     spool_folder: Annotated[Path | None, AfterValidator(_folder)] = Field(
         None,
-        description="Folder for what a streamed batch has to set aside, and for the files of fleets; the system’s for "
-        "temporary files by default.",
+        description="Folder for batches of lines on their way, and for the files of fleets; the system’s for temporary "
+        "files by default.",
     )
     maximum_spool_bytes: int = Field(
         2_000_000_000,
         gt=0,
-        description="Most bytes that fleets and streamed batches of one process set aside together while they arrive, "
-        "a seventh for each streamed batch; most bytes of all files of one fleet.",
+        description="Most bytes that fleets and batches of lines of one process set aside together, a seventh for each "
+        "batch; most bytes of all files of one fleet.",
     )
     maximum_unsaved_fleet_bytes: int = Field(
         1_000_000_000,

@@ -1,4 +1,4 @@
-"""The folder for what stands on a disk while a request is answered: files of fleets, results of streamed batches."""
+"""The folder for what stands on a disk while a request is answered: files of fleets, batches of lines."""
 
 import asyncio
 import errno

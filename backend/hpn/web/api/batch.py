@@ -1,45 +1,65 @@
-"""`POST /api/v1/select/batch`: one result line per application, as one JSON object or as a stream of lines."""
+"""`POST /api/v1/select/batch`: one result line per application, as one JSON object or as lines of JSON."""
 
+import asyncio
+import re
+import tempfile
 import time
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from collections.abc import AsyncIterator, Iterator, Sequence
+from contextlib import ExitStack, suppress
+from functools import cache
+from itertools import count
+from typing import Any, BinaryIO, NamedTuple, cast
 
 import msgspec
+import numpy as np
 from fastapi import APIRouter
+from msgspec import UNSET, Raw, UnsetType
 from msgspec.structs import replace
 from pydantic import ValidationError
-from pydantic_core import from_json, to_json
+from pydantic_core import from_json
 from starlette.datastructures import State
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import Response, StreamingResponse
+from starlette.types import Message, Receive, Scope, Send
 
-from hpn.application import BatchItem, InputError
+from hpn.application import BatchItem, InputError, unique
+from hpn.application.faults import unknown_field
+from hpn.application.unique import RepeatedNameError
 from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.selection import Judged, Outcome
-from hpn.web.api import schemas, streaming
-from hpn.web.api.items import Span, items_of
+from hpn.web import spool
+from hpn.web.api import schemas
 from hpn.web.api.replies import BatchLine, BatchReply, JSONBytes, ProblemReply, encode
-from hpn.web.api.streaming import Line
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import (
     JSON,
+    NDJSON,
     content_type_of,
+    pass_body,
     read_body,
     require_bounded,
-    require_plain,
     require_unique,
     wrong_type,
 )
-from hpn.web.door.metrics import Metrics
 from hpn.web.door.pools import Pool, pool_of, while_present
-from hpn.web.door.problems import Problem
+from hpn.web.door.problems import MAXIMUM_ERRORS, Problem
 from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 
-SLICE_ITEMS, SLICE_BYTES, SLICE_SECONDS = 256, 1_000_000, 0.25
-"""Items that are evaluated in one go, their bytes, and the time for reading them: a motion may take half a second."""
+SLICE_ITEMS, SLICE_SECONDS = 256, 0.25
+"""Items that are evaluated in one go, and the time for reading them: a motion may take half a second."""
 
+MEMORY_BYTES = 512 * 1024
+SHARES = 7
+"""Bodies of lines that fill the disk together."""
+
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+SHAPE = 'the body must be {"applications": [ … ]}'
+MOST_BESIDE = 64 * 1024
+"""Bytes of a body beside its applications."""
+
+NO_NUMBERS = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"|-?(?:NaN|Infinity)', re.DOTALL)
 RETRY_SECONDS = 5
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch")])
@@ -56,14 +76,14 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
 async def select_batch(request: Request) -> Response:
     """One line per application; an error in one never affects the others.
 
-    As JSON up to 10000 applications; as newline-delimited JSON any number, answered while they still arrive.
+    As JSON up to 10000 applications; as newline-delimited JSON any number, answered when the body is in.
     """
     state: State = request.app.state
     settings: Settings = state.settings
-    if content_type_of(request) in streaming.MEDIA_TYPES:
-        return _stream(request)
+    if content_type_of(request) in NDJSON:
+        return await LineAnswers.to(request)
     if content_type_of(request) != JSON:
-        raise wrong_type(request, f"{JSON} or {streaming.MEDIA_TYPES[0]}")
+        raise wrong_type(request, f"{JSON} or {NDJSON[0]}")
     body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes)
     pool = pool_of(request, "batches")
     with pool.place():
@@ -75,61 +95,99 @@ async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
     """Result lines of a batch, a slice at a time, so that others get their turn and one that was left ends."""
     settings: Settings = state.settings
     deadline = time.monotonic() + settings.batch_seconds
-    spans = await pool.run(_cut, body, settings)
-    lines: list[bytes] = []
-    done = 0
-    while done < len(spans):
+    texts = await pool.run(items_of, body, settings.maximum_batch_count)
+    items = (_item(bytes(text), settings.maximum_body_bytes) for text in texts)
+    answers = list[bytes]()
+    while (piece := await pool.run(_evaluated, items, state)) is not None:
         if time.monotonic() > deadline:
             text = f"the batch took longer than {settings.batch_seconds:g} s; send fewer items at once"
             raise Problem.later(text, RETRY_SECONDS)
-        answers, count = await pool.run(_evaluated, body, spans, done, state)
-        lines.append(answers)
-        done += count
-    return b"".join(lines)
+        answers.append(piece)
+    return b"".join(answers)
 
 
-def _cut(body: bytes, settings: Settings) -> list[Span]:
+# --- Items of a JSON body ---------------------------------------------------------------------------------------------
+
+
+def items_of(body: bytes, most: int) -> list[Raw]:
+    """Texts of the items, which stay unparsed: as Python objects, 32 MB of JSON can be a gigabyte.
+
+    Problem 400 for what is no JSON, 413 for more than `most`, 422 for another shape.
+    """
     try:
-        return items_of(body, settings.maximum_batch_count, settings.maximum_body_bytes)
-    except ValueError as error:
-        raise _no_json(error) from None
+        body, items = _cut(body, _shape(most))
+        _require_alone(_beside(body, items))
+    except msgspec.ValidationError as error:
+        if "of at most length" in str(error):
+            errors = [(("applications",), f"has more than {most} items")]
+            raise Problem(413, f"at most {most} applications at once", errors) from None
+        raise Problem(422, SHAPE, [(("applications",), "must be a list")]) from None
+    except RepeatedNameError:
+        raise Problem(422, SHAPE, [(("applications",), "is there twice")]) from None
+    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+        raise Problem(400, f"the body is not JSON: {error}") from None
+    return items
 
 
-def _slice(spans: Sequence[Span], first: int) -> Sequence[Span]:
-    """Items that are evaluated together: so many, and so many bytes."""
-    most = spans[first].start + SLICE_BYTES
-    part = spans[first : first + SLICE_ITEMS]
-    return part[: max(sum(span.end <= most for span in part), 1)]
+def _cut(body: bytes, shape: Any) -> tuple[bytes, list[Raw]]:
+    """A body and its items; numbers that JSON has not, such as NaN, are there as ones that no field takes."""
+    try:
+        given = msgspec.json.decode(body, type=shape)
+    except msgspec.DecodeError:
+        if not (b"NaN" in body or b"Infinity" in body):
+            raise
+        body = NO_NUMBERS.sub(lambda token: token[0] if token[0].startswith(b'"') else b"1e999", body)
+        given = msgspec.json.decode(body, type=shape)
+    items = given.applications
+    return body, [] if items is UNSET else [item for item in msgspec.structs.astuple(items) if item is not UNSET]
 
 
-def _evaluated(body: bytes, spans: Sequence[Span], first: int, state: State) -> tuple[bytes, int]:
-    """Result lines of the items from the first one on that are evaluated together, and how many these are."""
-    places = enumerate(_slice(spans, first), first)
-    items = (_numbered(number, body[span.start : span.end]) for number, span in places)
-    results = _results(items, state.catalogue, state.metrics)
-    return _encoded(results), len(results)
+@cache
+def _shape(most: int) -> Any:
+    """Type of a body with so many items at most: a list would first hold any number of them."""
+    fields = [(f"item_{number}", Raw | UnsetType, UNSET) for number in range(most)]
+    items = msgspec.defstruct("Items", fields, array_like=True, forbid_unknown_fields=True)
+    return msgspec.defstruct("Body", [("applications", items | UnsetType, UNSET)])
+
+
+def _beside(body: bytes, items: Sequence[Raw]) -> bytes:
+    """A body without its items, of which each is a part."""
+    if not items:
+        return body
+    whole, first, last = (np.frombuffer(part, np.uint8) for part in (body, items[0], items[-1]))
+    start, end = (part.ctypes.data - whole.ctypes.data for part in (first, last))
+    return body[:start] + body[end + len(last) :]
+
+
+def _require_alone(beside: bytes) -> None:
+    """Raise Problem 422 for a body without a list of applications, or with another field beside it, and
+    RepeatedNameError for two of them."""
+    if len(beside) > MOST_BESIDE:
+        raise Problem(422, f"{SHAPE} alone")
+    given = msgspec.json.decode(beside, type=dict[str, Raw])
+    if "applications" not in given:
+        raise Problem(422, SHAPE, [(("applications",), "must be a list")])
+    if unknown := [name for name in given if name != "applications"]:
+        known = [("applications",) if place < MAXIMUM_ERRORS else () for place in range(len(unknown))]
+        errors = [((name,), unknown_field(name, each).text) for name, each in zip(unknown, known, strict=True)]
+        raise Problem(422, f"{SHAPE} alone", errors)
+    unique.require_unique(beside)
 
 
 class _Item(NamedTuple):
-    """An item of a batch by its own reference: what it asks, or what is wrong with it."""
+    """An item of a batch by its own reference, and the line that it stands in: what it asks, or what is wrong."""
 
     reference: str | None
     asked: BatchItem | Problem
+    line: int = 0
 
 
-def _numbered(number: int, text: bytes) -> _Item:
-    """An item; Problem 400 that names it for what is no JSON."""
-    try:
-        return _item(text)
-    except ValueError as error:
-        detail = f"is not JSON: {error} of this item"
-        raise Problem(400, f"/applications/{number} {detail}", [(("applications", number), detail)]) from None
-
-
-def _item(text: bytes) -> _Item:
-    """An item as `select` reads an application, in the same order of its refusals; ValueError for what is no JSON."""
+def _item(text: bytes, most: int, line: int = 0) -> _Item:
+    """An item of so many bytes at most as `select` reads an application, in the same order of its refusals."""
     reference = None
     try:
+        if len(text) > most:
+            raise Problem(413, f"an application may have {most} bytes at most")
         require_bounded(text)
         value = from_json(text)
         given = value.get("reference") if isinstance(value, dict) else None
@@ -137,100 +195,113 @@ def _item(text: bytes) -> _Item:
         asked = BatchItem.model_validate(value)
         require_unique(text, value)
     except ValidationError as error:
-        return _Item(reference, Problem.of(error))
+        return _Item(reference, Problem.of(error), line)
+    except ValueError as error:
+        return _Item(None, Problem(400, f"is not JSON: {str(error).replace(' at line 1 ', ' at ')}"), line)
     except Problem as problem:
-        return _Item(reference, problem)
-    return _Item(reference, asked)
+        return _Item(reference, problem, line)
+    return _Item(reference, asked, line)
 
 
-def _no_json(error: ValueError) -> Problem:
-    return Problem(400, f"the body is not JSON: {error}")
+# --- Answers ----------------------------------------------------------------------------------------------------------
 
 
-def _results(items: Iterable[_Item], catalogue: Catalogue, metrics: Metrics) -> list[BatchLine]:
-    """Result lines of the items that could be read in time: one at least."""
-    results = _lines_of(_in_time(items), catalogue)
-    metrics.selections(result.verdict for result in results)
-    return results
-
-
-def _encoded(results: Iterable[BatchLine]) -> bytes:
+def _evaluated(items: Iterator[_Item | None], state: State) -> bytes | None:
+    """Result lines of the next items, as many as can be read in time; None at the end."""
+    end, read = time.monotonic() + SLICE_SECONDS, list[_Item]()
+    for item in items:
+        read += [item] if item else []
+        if len(read) == SLICE_ITEMS or time.monotonic() > end:
+            break
+    else:
+        if not read:
+            return None
+    results = _lines_of(read, state.catalogue)
+    state.metrics.selections(result.verdict for result in results)
     return b"".join([encode(result) + b"\n" for result in results])
 
 
-def _in_time(items: Iterable[_Item]) -> Iterator[_Item]:
-    """Items as long as whoever takes them one by one has time for another."""
-    end = time.monotonic() + SLICE_SECONDS
-    for item in items:
-        yield item
-        if time.monotonic() > end:
-            return
-
-
-def batch_lines(items: Iterable[Any], catalogue: Catalogue) -> list[BatchLine]:
-    """Result lines of batch items, given as values of JSON, in their order."""
-    return _lines_of([_item(to_json(item)) for item in items], catalogue)
-
-
-def _lines_of(items: Iterable[_Item], catalogue: Catalogue) -> list[BatchLine]:
-    """Result lines of items, in their order; each is validated on its own, before the next one is taken."""
-    read = list(items)
-    judged = iter(judge_batch([item.asked for item in read if isinstance(item.asked, BatchItem)], catalogue, _brief))
-    return [_line(item.reference, next(judged) if isinstance(item.asked, BatchItem) else item.asked) for item in read]
+def _lines_of(items: Sequence[_Item], catalogue: Catalogue) -> list[BatchLine]:
+    """Result lines of items, in their order."""
+    judged = iter(judge_batch([item.asked for item in items if isinstance(item.asked, BatchItem)], catalogue, _brief))
+    return [_line(item, next(judged) if isinstance(item.asked, BatchItem) else item.asked) for item in items]
 
 
 def _brief(judged: Judged) -> tuple[Outcome, str]:
     return judged.outcome(), to_link(judged.application)
 
 
-def _line(reference: str | None, outcome: tuple[Outcome, str] | InputError | Problem) -> BatchLine:
+def _line(item: _Item, outcome: tuple[Outcome, str] | InputError | Problem) -> BatchLine:
+    """Result line of an item; a problem without a reference names the line, since blank ones have no result."""
     if isinstance(outcome, tuple):
         brief, link = outcome
-        return BatchLine(reference, "ok", *brief, link=link)
+        return BatchLine(item.reference, "ok", *brief, link=link)
     problem = Problem.of(outcome) if isinstance(outcome, InputError) else outcome
-    return BatchLine(reference, "error", problem=msgspec.convert(problem.body(), ProblemReply))
-
-
-def _placed(line: Line, result: BatchLine) -> BatchLine:
-    """Result of a line, whose problem names the line where the line gives no reference."""
-    if not result.problem or result.reference is not None:
-        return result
-    return replace(result, problem=replace(result.problem, detail=f"line {line.number}: {result.problem.detail}"))
+    told = msgspec.convert(problem.body(), ProblemReply)
+    if item.line and item.reference is None:
+        told = replace(told, detail=f"line {item.line}: {told.detail}")
+    return BatchLine(item.reference, "error", problem=told)
 
 
 # --- Lines ------------------------------------------------------------------------------------------------------------
 
 
-def _stream(request: Request) -> Response:
-    require_plain(request)
-    state: State = request.app.state
-    settings: Settings = state.settings
-    return streaming.LineStream(
-        line_evaluator(state.catalogue, state.metrics, settings.maximum_body_bytes),
-        pool=pool_of(request, "batches"),
-        disk=state.disk,
-        maximum_line_bytes=settings.maximum_body_bytes,
-        spool_folder=settings.spool_folder,
-        seconds=settings.body_seconds,
-    )
+def items_of_lines(file: BinaryIO, most: int) -> Iterator[_Item | None]:
+    """Items of lines, of so many bytes at most; None for a blank one."""
+    for number in count(1):
+        line = file.readline(most + 2)
+        is_cut = len(line) == most + 2 and not line.endswith(b"\n")
+        while is_cut and len(more := file.readline(most)) == most and not more.endswith(b"\n"):
+            pass
+        if not line:
+            return
+        text = line if is_cut else line.removeprefix(BYTE_ORDER_MARK if number == 1 else b"").strip()
+        yield _item(text, most, number) if text else None
 
 
-def line_evaluator(catalogue: Catalogue, metrics: Metrics, maximum_line_bytes: int) -> streaming.Evaluate:
-    """Evaluator of lines of JSON for `LineStream`: the same result lines as `batch_lines` gives.
+class LineAnswers(StreamingResponse):
+    """A line for each line of a body, which has been set aside: most clients send everything before they read.
 
-    The problem of a line without a reference names the line: blank ones have no result, so that counting finds another.
+    A client that does not read for the seconds of the settings gets no more.
     """
 
-    def read(line: Line) -> _Item:
-        if line.content is None:
-            return _Item(None, Problem(413, f"a line may have {maximum_line_bytes} bytes at most"))
-        try:
-            return _item(line.content)
-        except ValueError as error:
-            return _Item(None, Problem(400, f"is not JSON: {str(error).replace(' at line 1 ', ' at ')}"))
+    def __init__(self, request: Request, file: BinaryIO, held: ExitStack) -> None:
+        self._request, self._held = request, held
+        super().__init__(self._pieces(file), media_type=NDJSON[0], headers={"Cache-Control": "no-store"})
 
-    def evaluate(lines: Sequence[Line]) -> tuple[bytes, int]:
-        results = _results(map(read, lines), catalogue, metrics)
-        return _encoded(map(_placed, lines, results)), len(results)
+    @classmethod
+    async def to(cls, request: Request) -> "LineAnswers":
+        """Answers to a request; Problem as `pass_body` says, 413 or 503 where the disk has no room for the body."""
+        state: State = request.app.state
+        settings: Settings = state.settings
+        with ExitStack() as stack, spool.usable():
+            share = stack.enter_context(state.disk.share())
+            folder = settings.spool_folder
+            file = stack.enter_context(tempfile.SpooledTemporaryFile(MEMORY_BYTES, dir=str(folder) if folder else None))
 
-    return evaluate
+            async def take(piece: bytes) -> None:
+                share.take(len(piece))
+                await pool_of(request, "pages").run(file.write, piece)  # whose work is short
+
+            seconds, most = settings.body_seconds, state.disk.total // SHARES
+            await pass_body(request, take, maximum_bytes=most, pause_seconds=seconds, seconds=seconds)
+            file.seek(0)
+            stack.enter_context(pool_of(request, "batches").place())
+            return cls(request, cast(BinaryIO, file), stack.pop_all())
+
+    async def _pieces(self, file: BinaryIO) -> AsyncIterator[bytes]:
+        state: State = self._request.app.state
+        items = items_of_lines(file, state.settings.maximum_body_bytes)
+        while (piece := await pool_of(self._request, "batches").run(_evaluated, items, state)) is not None:
+            yield piece
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send them while the client reads, and give back what was set aside."""
+        seconds: float = self._request.app.state.settings.body_seconds
+
+        async def send_in_time(message: Message) -> None:
+            async with asyncio.timeout(seconds):
+                await send(message)
+
+        with self._held, suppress(TimeoutError, Problem):  # the server ends a connection whose answer has no end
+            await while_present(self._request, self.stream_response(send_in_time))

@@ -16,9 +16,9 @@ from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from hpn.fleet.order import ANSWERED_IN, suffix_of
-from hpn.web.api import schemas, streaming
+from hpn.web.api import schemas
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import content_type_of, pass_body, wrong_type
+from hpn.web.door.bodies import NDJSON, content_type_of, pass_body, wrong_type
 from hpn.web.door.disk import Share
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import pool_of
@@ -31,7 +31,7 @@ MEDIA_TYPES = {
     ".parquet": "application/vnd.apache.parquet",
     ".arrow": "application/vnd.apache.arrow.file",
     ".csv": "text/csv",
-    ".ndjson": streaming.MEDIA_TYPES[0],
+    ".ndjson": NDJSON[0],
 }
 """Formats of tables by suffix."""
 
@@ -39,7 +39,7 @@ READ_TYPES = {".arrows": "application/vnd.apache.arrow.stream", ".csv.gz": "appl
 """Formats that are read and not written."""
 
 SUFFIXES = {media_type: suffix for suffix, media_type in (MEDIA_TYPES | READ_TYPES).items()} | dict.fromkeys(
-    streaming.MEDIA_TYPES, ".ndjson"
+    NDJSON, ".ndjson"
 )
 IGNORED = "HPN-Ignored-Columns"
 """Header with the names of index columns that pandas wrote, each in quotes and percent-encoded."""

@@ -28,7 +28,7 @@ class Readiness(Health):
     catalogue_version: str = Field(description="Hash of the loaded catalogue’s content.", examples=["53ef277c50b29b46"])
     gears: int = Field(description="Number of gears in the catalogue.", examples=[64])
     store: str = Field(description="ok while selections can be saved.", examples=["ok"])
-    spool: str = Field(description="ok while files of fleets and streamed batches can be kept.", examples=["ok"])
+    spool: str = Field(description="ok while files of fleets and batches of lines can be kept.", examples=["ok"])
 
 
 @router.get("/healthz", operation_id="getHealth", summary="Liveness")

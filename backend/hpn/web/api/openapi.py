@@ -1,6 +1,6 @@
 """The OpenAPI document: what FastAPI finds by itself, and what the direct routes know better."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -12,9 +12,7 @@ from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.catalogue import Catalogue
-from hpn.web.api import samples, schemas
-from hpn.web.api.exchanges import SUMMARIES, Exchange, exchanges
+from hpn.web.api import schemas
 from hpn.web.api.replies import encode
 from hpn.web.door.access import admit, group_of
 from hpn.web.door.conditions import conditional
@@ -60,15 +58,14 @@ def install(app: FastAPI, *bodies: type[BaseModel]) -> None:
 
     @cache
     def openapi() -> dict[str, Any]:
-        document, catalogue = found(), app.state.catalogue
+        document = found()
         models: list[Any] = [(model, "validation") for model in bodies]
         _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
         components = document["components"]
         components |= {"securitySchemes": KEY_SCHEMES, "headers": schemas.header_components()}
         components["schemas"] |= definitions["$defs"]
-        _complete(document, _groups(app), catalogue, app.state.settings)
+        _complete(document, _groups(app), app.state.settings)
         _give_formats(document)
-        samples.illustrate(components["schemas"], catalogue)
         return document
 
     app.openapi = openapi  # type: ignore[method-assign]
@@ -81,16 +78,11 @@ def _groups(app: FastAPI) -> dict[tuple[str, str], RouteGroup | None]:
 
 
 def _complete(
-    document: dict[str, Any],
-    groups: Mapping[tuple[str, str], RouteGroup | None],
-    catalogue: Catalogue,
-    settings: Settings,
+    document: dict[str, Any], groups: Mapping[tuple[str, str], RouteGroup | None], settings: Settings
 ) -> None:
-    """Add examples, keys, headers, and texts of parameters to every operation."""
-    shown = exchanges(catalogue)
+    """Add keys, headers, and texts of parameters to every operation."""
     for path, operations in document["paths"].items():
         for method, operation in operations.items():
-            _give_examples(operation, shown.get(operation["operationId"], ()))
             _say_keys(operation, groups[method.upper(), path], settings)
             _say_headers(operation)
             for parameter in operation.get("parameters", ()):
@@ -132,26 +124,6 @@ def _say_headers(operation: dict[str, Any]) -> None:
     always = schemas.headers("X-Request-ID", *(("RateLimit", "RateLimit-Policy") if operation["security"] else ()))
     for response in operation["responses"].values():
         response["headers"] = response.get("headers", {}) | always
-
-
-def _give_examples(operation: dict[str, Any], shown: Sequence[Exchange]) -> None:
-    """Whole requests, and the answers that they get where those are always the same."""
-    body = operation.get("requestBody", {}).get("content", {}).get("application/json")
-    name = body["schema"].get("$ref", "").rpartition("/")[2] if body else ""
-    if name in samples.WHOLE:
-        body["examples"] = _example("worked_example", samples.WHOLE[name])
-    for exchange in shown:
-        for parameter in operation.get("parameters", ()):
-            if parameter["name"] in exchange.parameters:
-                parameter["example"] = exchange.parameters[parameter["name"]]
-        if exchange.lines:
-            operation["requestBody"]["content"][schemas.LINES]["examples"] = _example(exchange.name, exchange.lines)
-        content = operation["responses"][str(exchange.status)]["content"]
-        content[exchange.media_type]["examples"] = _example(exchange.name, exchange.answer)
-
-
-def _example(name: str, value: Any) -> dict[str, Any]:
-    return {name: {"summary": SUMMARIES[name], "value": value}}
 
 
 def _describe(parameter: dict[str, Any]) -> None:

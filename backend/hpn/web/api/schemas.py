@@ -6,13 +6,13 @@ from typing import Annotated, Any
 from fastapi import Path
 from pydantic import BaseModel, Field
 
-from hpn.application import BatchItem
+from hpn.application import WORKED_EXAMPLE, Application, BatchItem
 from hpn.web.api.replies import MOST_AT_ONCE
-from hpn.web.door.bodies import JSON
+from hpn.web.door.bodies import JSON, NDJSON
 from hpn.web.door.problems import MEDIA_TYPE, TITLES
 from hpn.words.fields import Model
 
-LINES = "application/x-ndjson"
+LINES = NDJSON[0]
 
 
 class Batch(Model):
@@ -21,11 +21,21 @@ class Batch(Model):
     applications: tuple[BatchItem, ...] = Field(max_length=MOST_AT_ONCE, description="Up to 10000 applications.")
 
 
+EXAMPLES: dict[type[BaseModel], Any] = {
+    Application: WORKED_EXAMPLE,
+    Batch: {"applications": [{"reference": "axis-7", **WORKED_EXAMPLE}]},
+}
+"""The handbook's worked example (chapter 4.1) as a whole request."""
+
+
 def request_body(model: type[BaseModel], *media_types: str) -> dict[str, Any]:
     """OpenAPI entry of a request body in JSON; `openapi.py` adds the model's schema to the document."""
-    schema = {"$ref": f"#/components/schemas/{model.__name__}"}
-    content = {media_type: {"schema": schema} for media_type in media_types or (JSON,)}
-    return {"requestBody": {"required": True, "content": content}}
+    entry: dict[str, Any] = {"schema": {"$ref": f"#/components/schemas/{model.__name__}"}}
+    if model in EXAMPLES:
+        entry["examples"] = {"worked_example": {"summary": "The handbook’s worked example", "value": EXAMPLES[model]}}
+    return {
+        "requestBody": {"required": True, "content": {media_type: dict(entry) for media_type in media_types or (JSON,)}}
+    }
 
 
 def batch_body() -> dict[str, Any]:
@@ -147,7 +157,7 @@ def batch_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     lines = {
         "type": "string",
         "description": "Lines that end in a line feed, each a JSON object as the schema BatchLine says: the answer to "
-        "one line, in their order, sent while others still arrive.",
+        "one line, in their order.",
     }
     return answers(*statuses, content={LINES: {"schema": lines}})
 

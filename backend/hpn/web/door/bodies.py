@@ -19,6 +19,8 @@ from hpn.words.fields import MAXIMUM_PHASES
 M = TypeVar("M", bound=BaseModel)
 
 JSON, MERGE_PATCH, FORM = "application/json", "application/merge-patch+json", "application/x-www-form-urlencoded"
+NDJSON = ("application/x-ndjson", "application/ndjson", "application/jsonl")
+"""Names of JSON in lines, the usual one first."""
 
 MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES + 1000, 10_000
 """Most objects, names and lists in the JSON of an application; the longest one stays below."""

@@ -32,21 +32,13 @@ class Share:
         self._disk = disk
         self.taken = 0
 
-    def fits(self, count: int) -> bool:
-        """True where the disk has room for so many more."""
-        return self._disk.taken + count <= self._disk.total
-
     def take(self, count: int) -> None:
         """Set more aside; Problem 413 for more than there is room for at all, 503 where others have too much there."""
         if self.taken + count > self._disk.total:
             raise Problem(413, f"more than {self._disk.total} bytes can’t be set aside; send less at once")
-        if not self.fits(count):
+        if self._disk.taken + count > self._disk.total:
             text = f"other requests have set {self._disk.taken} of {self._disk.total} bytes aside; try again later"
             raise Problem.later(text, RETRY_SECONDS)
-        self.add(count)
-
-    def add(self, count: int) -> None:
-        """Set more aside, whatever room there is."""
         self.taken += count
         self._disk.taken += count
 

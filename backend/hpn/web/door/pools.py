@@ -42,8 +42,8 @@ PLACES: Mapping[PoolName, Places] = {
     "metrics": Places(1, 3),
     "fleets": Places(1, 3),
 }
-"""Pages and long calculations; files that are made; files of strangers that are read; batches and streams, each for its
-whole time; what Prometheus asks; fleets, which are sized in processes beside the service, whose number is a setting.
+"""Pages and long calculations; files that are made; files of strangers that are read; batches; what Prometheus asks;
+fleets, which are sized in processes beside the service, whose number is a setting.
 """
 
 FILE_BOUNDS = Bounds(500_000_000, 30)

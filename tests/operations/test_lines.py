@@ -1,25 +1,25 @@
-"""Batches as newline-delimited JSON: the same answers, line by line, while the body still arrives."""
+"""Batches as newline-delimited JSON: the same answers, line by line, once the body is in."""
 
+import asyncio
+import io
 import json
+from pathlib import Path
 from typing import Any
 
 import orjson
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from starlette.testclient import TestClient
+from starlette.types import Message
 
-from hpn.catalogue import Catalogue
 from hpn.web.api import batch
-from hpn.web.api.batch import batch_lines, line_evaluator
-from hpn.web.api.replies import encode
-from hpn.web.api.streaming import MEMORY_BYTES, Line, LineSplitter, Spool
-from hpn.web.door.disk import Disk, Share
-from hpn.web.door.metrics import Metrics
+from hpn.web.api.batch import MEMORY_BYTES, items_of_lines
+from hpn.web.door.problems import Problem
 from tests.build import worked_example
 from tests.operations.conftest import MakeClient
+from tests.operations.lines import peaks_MB
 from tests.operations.proxy import proxied
 from tests.operations.service import Service
-from tests.operations.streamed import peaks_MB
+from tests.state import state_of
 
 PATH = "/api/v1/select/batch"
 NDJSON = {"Content-Type": "application/x-ndjson"}
@@ -31,7 +31,7 @@ ITEMS: list[Any] = [
     [1, 2],
     {"reference": "axis-ü", **worked_example(requirements={"ratios": [5]})},
 ]
-LINES = [Line(number, orjson.dumps(item)) for number, item in enumerate(ITEMS, start=1)]
+BODY = b"".join(orjson.dumps(item) + b"\n" for item in ITEMS)
 
 
 def lines_of(content: bytes) -> list[Any]:
@@ -114,7 +114,7 @@ def test_a_problem_without_a_reference_names_its_line_and_blank_lines_count(make
         "line 4: must be an object",
         "line 5: /reference: must be text",
         "/duty_cycle: is required",
-        "line 7: a line may have 2000 bytes at most",
+        "line 7: an application may have 2000 bytes at most",
     ]
     assert [result["reference"] for result in results] == ["axis-1", None, None, None, "axis-2", None]
 
@@ -132,42 +132,15 @@ def test_another_content_type_is_a_415(make_client: MakeClient) -> None:
     assert "as application/json or application/x-ndjson (" in reply.json()["detail"]
 
 
-@given(st.lists(st.sampled_from([b"abc", b"", b" ", b"x" * 8, b"x" * 9, b"y" * 40, b"\r"])), st.integers(1, 20))
-def test_cutting_does_not_depend_on_how_the_body_is_cut(parts: list[bytes], size: int) -> None:
-    body = b"\n".join(parts)
-    splitter = LineSplitter(8)
+@pytest.mark.parametrize("size", [8, 9, 10, 11, 40])
+def test_a_line_too_long_ends_at_its_own_end(size: int) -> None:
+    body = b"\n".join([b"x" * size, b"5", b"", b"y" * size])
+    items = list(items_of_lines(io.BytesIO(body), 8))
 
-    lines: list[Line] = []
-    for start in range(0, len(body), size):
-        lines += splitter.feed(body[start : start + size])
-    lines += splitter.rest()
-
-    assert lines == [
-        Line(number, None if len(part) > 8 else part.strip())
-        for number, part in enumerate(parts, start=1)
-        if len(part) > 8 or part.strip()
-    ]
-
-
-@given(st.lists(st.integers(0, MEMORY_BYTES) | st.just(-1), max_size=30))
-def test_the_spool_gives_back_what_it_got_in_order(steps: list[int]) -> None:
-    disk, expected, got = Disk(10**9), b"", b""
-    share = Share(disk)
-    spool = Spool(share, 10**9)
-    for number, size in enumerate(steps):
-        if size >= 0:
-            piece = bytes([number]) * size
-            spool.write(piece)
-            expected += piece
-        else:
-            got += spool.read()
-        assert len(spool) == len(expected) - len(got)
-    while piece := spool.read():
-        got += piece
-    spool.close()
-
-    assert got == expected
-    assert disk.taken == 0
+    assert [item and item.line for item in items] == [1, 2, None, 4]
+    status = 400 if size == 8 else 413
+    refused = [item.asked for item in items if item]
+    assert [isinstance(one, Problem) and one.status_code for one in refused] == [status, 422, status]
 
 
 def test_twenty_times_the_lines_take_no_more_memory_on_either_side(service: Service) -> None:
@@ -190,22 +163,93 @@ def test_a_client_that_sends_all_before_it_reads_gets_all(front: str, service: S
     assert peaks[0] < 400
 
 
-def test_the_evaluator_gives_the_lines_of_the_json_form(catalogue: Catalogue) -> None:
-    answers, count = line_evaluator(catalogue, Metrics(), 100)(LINES)
-
-    assert count == len(ITEMS)
-    assert lines_of(answers) == named(json.loads(encode(batch_lines(ITEMS, catalogue))))
-
-
-def test_a_slice_ends_when_its_time_is_up(catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch) -> None:
-    whole, _ = line_evaluator(catalogue, Metrics(), 100)(lines := LINES)
+def test_slices_that_end_early_answer_the_same(make_client: MakeClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    client, body = make_client(), b"\n\n" + BODY.replace(b"\n", b"\n\n")
+    whole = client.post(PATH, content=body, headers=NDJSON).content
     monkeypatch.setattr(batch, "SLICE_SECONDS", 0)
-    answers, counts = [], []
-    while lines:
-        answer, count = line_evaluator(catalogue, Metrics(), 100)(lines)
-        answers.append(answer)
-        counts.append(count)
-        lines = lines[count:]
 
-    assert b"".join(answers) == whole
-    assert counts == [1] * len(ITEMS)
+    assert client.post(PATH, content=body, headers=NDJSON).content == whole
+    assert len(lines_of(whole)) == len(ITEMS)
+
+
+# --- Bounds -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_body_beyond_its_share_of_the_disk_is_refused_and_all_is_given_back(make_client: MakeClient) -> None:
+    client = make_client(maximum_spool_bytes=7 * len(BODY))
+
+    answers = [client.post(PATH, content=content, headers=NDJSON) for content in (BODY, BODY + b" ", BODY)]
+
+    assert [answer.status_code for answer in answers] == [200, 413, 200]
+    assert state_of(client).disk.taken == 0
+
+
+def test_where_the_disk_is_full_lines_are_a_503(make_client: MakeClient, tmp_path: Path) -> None:
+    (folder := tmp_path / "spool").mkdir()
+    client = make_client(spool_folder=folder)
+    folder.rmdir()
+
+    assert client.post(PATH, content=b" " * 2 * MEMORY_BYTES, headers=NDJSON).status_code == 503
+
+
+class Peer:
+    """A client as the server's protocol shows it, which has sent a body."""
+
+    def __init__(self, body: bytes, *, reads: bool = True) -> None:
+        self._incoming: asyncio.Queue[Message] = asyncio.Queue()
+        self._incoming.put_nowait({"type": "http.request", "body": body, "more_body": False})
+        self._reads, self.sent = reads, list[Message]()
+
+    def leave(self) -> None:
+        """Hang up."""
+        self._incoming.put_nowait({"type": "http.disconnect"})
+
+    async def send(self, message: Message) -> None:
+        """For the application."""
+        self.sent.append(message)
+        while message.get("body") and not self._reads:
+            await asyncio.sleep(60)
+
+    async def ask(self, client: TestClient) -> None:
+        """Have the application answer."""
+        headers = [(b"content-type", b"application/x-ndjson"), (b"host", b"testserver")]
+        scope = {"type": "http", "method": "POST", "path": PATH, "raw_path": PATH.encode(), "headers": headers}
+        more = {"query_string": b"", "client": ("127.0.0.1", 5), "server": ("testserver", 80), "scheme": "http"}
+        await client.app({**scope, **more, "http_version": "1.1"}, self._incoming.get, self.send)
+
+
+@pytest.mark.anyio
+async def test_a_client_that_never_reads_is_cut_off(make_client: MakeClient) -> None:
+    client, peer = make_client(body_seconds=0.3), Peer(BODY, reads=False)
+    await asyncio.wait_for(peer.ask(client), 20)
+
+    assert peer.sent[-1]["more_body"]  # so that the server ends the connection
+    assert state_of(client).disk.taken == state_of(client).pools["batches"].taken == 0
+
+
+@pytest.mark.anyio
+async def test_work_ends_when_the_client_leaves(make_client: MakeClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    client, peer = make_client(), Peer(b"{}\n" * 200_000)
+    asked = asyncio.ensure_future(peer.ask(client))
+    while not peer.sent:
+        await asyncio.sleep(0.01)
+    peer.leave()
+    await asyncio.wait_for(asked, 20)
+
+    assert peer.sent[-1]["more_body"]
+    assert state_of(client).disk.taken == state_of(client).pools["batches"].taken == 0
+
+
+@pytest.mark.anyio
+async def test_a_mistake_of_ours_leaves_the_answer_without_its_end(
+    make_client: MakeClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*arguments: Any) -> bytes:
+        raise RuntimeError("mistake")
+
+    client, peer = make_client(), Peer(BODY)
+    monkeypatch.setattr(batch, "judge_batch", fail)
+    await peer.ask(client)
+
+    assert [message["type"] for message in peer.sent] == ["http.response.start"]
+    assert state_of(client).disk.taken == 0

@@ -1,4 +1,4 @@
-"""Memory of a streamed batch on both sides: `python -m tests.operations.streamed PORT COUNT` is its client, which
+"""Memory of a batch of lines on both sides: `python -m tests.operations.lines PORT COUNT` is its client, which
 comes through nginx where a file with its certificate is named as well.
 
 The client sends everything before it reads anything, as most HTTP libraries do: for the service that is the hard case.
@@ -18,7 +18,7 @@ LINES_AT_ONCE = 100
 def peaks_MB(server: int, port: int, count: int, certificate: Path | None = None) -> tuple[float, float]:
     """Most memory of the server's process and of a client in a process of its own, while a batch is answered."""
     Path(f"/proc/{server}/clear_refs").write_text("5")  # the peak counts anew from here
-    command = [sys.executable, "-m", "tests.operations.streamed", str(port), str(count)]
+    command = [sys.executable, "-m", "tests.operations.lines", str(port), str(count)]
     command += [str(certificate)] if certificate else []
     client = float(subprocess.run(command, check=True, capture_output=True).stdout)
     return _peak_MB(server), client
