@@ -279,8 +279,8 @@ function describe(field, keep, added) {
 // --- What is still being typed ----------------------------------------------------------------------------------------
 
 // A number that ends in its decimal mark, a sign or an operator is no error of somebody who is about to type on, nor is the 0
-// of a duration of 0.3.
-const unfinishedNumber = (field) => field.inputMode === "decimal" && (field.name === "t" ? /(^0|[-+*/(.,eE=])$/ : /[-+*/(.,eE=]$/).test(field.value.trim());
+// of a duration of 0.3, nor a size whose number follows.
+const unfinishedNumber = (field) => "bySize" in field.dataset ? /[-+*/(.,eE=:]$|;[^:;]*$/.test(field.value.trim()) : field.inputMode === "decimal" && (field.name === "t" ? /(^0|[-+*/(.,eE=])$/ : /[-+*/(.,eE=]$/).test(field.value.trim());
 
 // Neither is a phase with a torque and no speed yet, nor a move without its time.
 function unfinishedRow() {

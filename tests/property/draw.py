@@ -189,7 +189,17 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
     pause_s = some(0, 20, 0) if maybe() else 0.0
     if maybe(0.3):
         phases = [entry | ({"name": chance.choice(NAMES)} if maybe(0.7) else {}) for entry in phases]
-    return _with_drive(_with_rest(cycle(*phases, pause_s=pause_s, **parts)))
+    return _with_centres(_with_drive(_with_rest(cycle(*phases, pause_s=pause_s, **parts))))
+
+
+def _with_centres(application: Json) -> Json:
+    """The application with its shaft's centre by size in one of three, by chance of its own likewise."""
+    chance, load = random.Random(f"centres of {application!r}"), application.get("output_load", {})
+    if "shaft_centre_mm" not in load or chance.random() > 1 / 3:
+        return application
+    sizes = chance.sample(["11A", "14A", "20A", "32A", "40A", "others"], chance.choice([1, 2, 4]))
+    centres = {size: chance.choice([21.0, 45.0, chance.uniform(10, 60)]) for size in sizes}
+    return application | {"output_load": load | {"shaft_centre_mm": centres}}
 
 
 def _with_drive(application: Json) -> Json:

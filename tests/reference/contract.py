@@ -386,6 +386,8 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
     ]
     loads = [(F_R + own[0], F_A + own[1]) for (F_R, F_A), own in zip(loads, _of_wheel(phases, given, by), strict=True)]
     x, y, x_c = given.get("radial_position_mm"), given.get("axial_radius_mm", 0), given.get("shaft_centre_mm")
+    if isinstance(x_c, Mapping):
+        x_c = x_c.get(gear.size, x_c.get("others"))
     at_centre = [_at_centre(F_R, F_A, x, y, x_c) for F_R, F_A in loads]
     P = [
         None if F_R is None else _equivalent(given.get("model", "linear"), F_R, F_A, gear)

@@ -4,15 +4,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hpn.application import Application
+from hpn.application import OTHERS, Application
 from hpn.engine.notice import AREAS
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
-from hpn.words.terms import BEARING_MODELS, LIFE_BASES, MECHANISMS, POSITION_ERROR_AT, RANKINGS
+from hpn.words.terms import BEARING_MODELS, FOR_OTHERS, LIFE_BASES, MECHANISMS, POSITION_ERROR_AT, RANKINGS
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_
 
-Value = float | str | bool | tuple[str | int, ...]
+Value = float | str | bool | tuple[str | int, ...] | dict[str, float]
 
 LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
 _LOADING = ("duty_cycle.", "emergency_stop.", LOAD_PATH)
@@ -81,13 +81,20 @@ def given(application: Application, paths: Iterable[str], reader: Reader) -> Ite
     for path in paths:
         value = value_of(application, path)
         if value is not None:
-            yield InputLine(reader.text(INPUTS[path].name), INPUTS[path].symbol, _written(value, path, reader))
+            yield InputLine(reader.text(INPUTS[path].name), INPUTS[path].symbol, written(value, path, reader))
 
 
-def _written(value: Value, path: str, reader: Reader) -> str:
+def written(value: Value, path: str, reader: Reader) -> str:
+    """A value of an input in words or with its unit."""
     if isinstance(value, tuple):
         return ", ".join(map(str, value))
     if isinstance(value, str | bool):
         return reader.text(WORDS.get(str(value), str(value)))
     unit = suffix_of(path)
+    if isinstance(value, dict):
+        return "; ".join(f"{_size(size, reader)}: {written(x, path, reader)}" for size, x in value.items())
     return reader.with_unit(reader.exact(value, unit), unit)
+
+
+def _size(size: str, reader: Reader) -> str:
+    return reader.text(FOR_OTHERS) if size == OTHERS else size

@@ -1,7 +1,7 @@
 """Every field of an application with its kind and bounds, read from the JSON Schema of the models."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -16,7 +16,8 @@ Json = dict[str, Any]
 class InputField:
     """One field: its place in the application, or in a phase, and what it, or each item of its list, may be.
 
-    `least` and `most` may be reached, `above` may not. `required` is one that any application, or any phase, has.
+    `least` and `most` may be reached, `above` may not. `required` is one that any application, or any phase, has. One
+    `by_size` may also be an object of such values by size.
     """
 
     path: tuple[str, ...]
@@ -28,6 +29,7 @@ class InputField:
     most: float
     above: float
     choices: tuple[str, ...] | None
+    by_size: bool = False
 
 
 def _fields_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -> Iterator[InputField]:
@@ -44,10 +46,19 @@ def _fields_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -
 
 
 def _resolved(entry: Json, definitions: Json) -> Json:
-    """Schema of a field without its null and its reference."""
-    if "anyOf" in entry:
-        entry = next(option for option in entry["anyOf"] if option.get("type") != "null")
+    """Schema of a field without its null, its reference, and the object by size that a value may be instead."""
+    entry = next((option for option in _options(entry) if option.get("type") != "null"), entry)
     return dict(definitions[entry["$ref"].rsplit("/", 1)[1]]) if "$ref" in entry else entry
+
+
+def _options(entry: Json) -> list[Json]:
+    """Schemas of which a field has one, values before objects of them; none where it has a single one."""
+    options: Iterable[Json] = entry.get("anyOf", ()) or entry.get("oneOf", ())
+    return sorted(options, key=_is_by_size)
+
+
+def _is_by_size(option: Json) -> bool:
+    return isinstance(option.get("additionalProperties"), dict)
 
 
 def _field(path: tuple[str, ...], entry: Json, shape: Json, *, required: bool) -> InputField:
@@ -62,6 +73,7 @@ def _field(path: tuple[str, ...], entry: Json, shape: Json, *, required: bool) -
         most=item.get("maximum", math.inf),
         above=item.get("exclusiveMinimum", -math.inf),
         choices=tuple(item["enum"]) if "enum" in item else None,
+        by_size=any(map(_is_by_size, _options(entry))),
     )
 
 

@@ -5,8 +5,21 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
+from hpn.application.shaft_centre import ShaftCentre
 from hpn.words.designations import canonical_size
-from hpn.words.fields import Hours, Load, Model, Number, Positive, Ratio, Share, TorqueMagnitude, at_most, refused
+from hpn.words.fields import (
+    Hours,
+    Load,
+    Model,
+    Number,
+    Positive,
+    Ratio,
+    Share,
+    TorqueMagnitude,
+    at_most,
+    one_of,
+    refused,
+)
 
 BearingModel = Literal["linear", "iso281", "digitised"]
 LifeBasis = Literal["L50", "L10"]
@@ -53,11 +66,12 @@ class OutputLoad(Model):
     axial_radius_mm: Annotated[Number, Field(ge=0, le=1e6)] = Field(
         0.0, description="Distance y of the axial load from the shaft’s axis.", examples=[40.0]
     )
-    shaft_centre_mm: Positive | None = Field(
+    shaft_centre_mm: ShaftCentre | None = Field(
         None,
         description="Distance x_c from the shoulder to the shaft’s centre, at least; for sizes without one in the "
-        "catalogue.",
-        examples=[21.0],
+        "catalogue. One for all, or an object by size, in which others is for the rest.",
+        examples=[21.0, {"20A": 21.0, "others": 18.0}],
+        json_schema_extra=one_of,
     )
     from_motion: Annotated[bool, Field(strict=True)] = Field(
         False,

@@ -3,20 +3,28 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from hpn.application import LISTED_FIGURES, Application, InputError, Location
+from hpn.application import LISTED_FIGURES, OTHERS, Application, InputError, Location, OutputLoad
+from hpn.application.shaft_centre import by_size
 from hpn.catalogue import Catalogue, GearList
+from hpn.words.likeness import likeness
 from hpn.words.wording import N_, Sentence, Value
 
 NOT_THERE = N_("the catalogue has no {value} (available: {listed})")
+LOOKS_LIKE = N_("the catalogue has no {value}; it looks like {near} (available: {listed})")
 NOT_TOGETHER = N_("there is no gear of this size and ratio (available: {offered})")
 
 MOTORS_NAMED = 20
 """Motors that an error names."""
 
+SIZES_NAMED, SHOWN = 20, 40
+"""Unknown sizes that an error names, and characters of each."""
+
 
 def gears_for(application: Application, catalogue: Catalogue) -> GearList:
     """Gears that an application allows; raises InputError as `select` does."""
     asked, load = application.requirements, application.output_load
+    if load is not None:
+        _require_sizes_of_centres(load, catalogue)
     return gears_allowed(asked.sizes, asked.ratios, load.model if load else "", catalogue)
 
 
@@ -36,6 +44,21 @@ def gears_allowed(
             )
         )
     return gears
+
+
+def _require_sizes_of_centres(load: OutputLoad, catalogue: Catalogue) -> None:
+    """Raise InputError for a shaft's centre of a size that the catalogue lacks."""
+    there = (*catalogue.sizes, OTHERS)
+    strange = [size for size in by_size(load.shaft_centre_mm) if size not in there]
+    if strange:
+        raise InputError(
+            *((("output_load", "shaft_centre_mm", size), _none_such(size, there)) for size in strange[:SIZES_NAMED])
+        )
+
+
+def _none_such(size: str, there: Sequence[str]) -> Sentence:
+    near, values = likeness(size, there), {"value": size[:SHOWN], "listed": ", ".join(there)}
+    return Sentence(LOOKS_LIKE, {**values, "near": near}) if near else Sentence(NOT_THERE, values)
 
 
 @lru_cache(maxsize=256)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from hpn.application import Application, OutputLoad
 from hpn.application.input_fields import NUMBERS
 from hpn.application.phase import ROOM
+from hpn.application.shaft_centre import by_size, of_others
 from hpn.physics import bearing, equations, shaft_load
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, StoppedLoad, tangential_force
@@ -90,7 +91,8 @@ class Asked:
 
     `numbers` holds every single number of the application model by its path with dots, such as `requirements.life_h`;
     NaN where it is not given. Where no load is given, neither are the conditions of a load. `load_reverses` is NaN, 0
-    or 1, `position_error_at` the word of the application.
+    or 1, `position_error_at` the word of the application. `shaft_centres_mm` has the distances that are given for one
+    size, by size; the number by its path is that of all others.
     """
 
     numbers: Mapping[str, FloatArray]
@@ -100,6 +102,7 @@ class Asked:
     position_error_at: TextArray
     shaft_drive: TextArray
     load_reverses: FloatArray
+    shaft_centres_mm: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Asked":
@@ -114,10 +117,31 @@ class Asked:
             np.array([[application.requirements.position_error_at] for application in applications]),
             np.array([[application.shaft_drive] for application in applications]),
             np.array([[application.requirements.load_reverses] for application in applications], dtype=np.float64),
+            _by_size([by_size(load.shaft_centre_mm) if load else {} for load in loads]),
         )
 
     def __getitem__(self, path: str) -> FloatArray:
         return self.numbers[path]
+
+    def shaft_centre_mm(self, sizes: Sequence[str]) -> FloatArray:
+        """Distance x_c in mm that is given for each size: its own, else that of all others.
+
+        Shape (N, sizes); (N, 1) where none of them has one of its own.
+        """
+        others = self[SHAFT_CENTRE]
+        if self.shaft_centres_mm.keys().isdisjoint(sizes):
+            return others
+        columns = [self.shaft_centres_mm.get(size, others) for size in sizes]
+        return np.concatenate([np.where(np.isnan(column), others, column) for column in columns], axis=1)
+
+
+SHAFT_CENTRE = "output_load.shaft_centre_mm"
+
+
+def _by_size(given: Sequence[Mapping[str, float]]) -> Mapping[str, FloatArray]:
+    """Numbers of N applications by size, each of shape (N, 1): NaN where an application has none of it."""
+    sizes = dict.fromkeys(size for one in given for size in one)
+    return {size: np.array([[one.get(size, np.nan)] for one in given]) for size in sizes}
 
 
 def _numbers(application: Application) -> list[float | None]:
@@ -132,7 +156,8 @@ def _numbers(application: Application) -> list[float | None]:
         ("requirements",): application.requirements,
         ("requirements", "motor"): application.requirements.motor,
     }
-    return [getattr(parts[path[:-1]], path[-1], None) for path in NUMBERS]
+    values = [getattr(parts[path[:-1]], path[-1], None) for path in NUMBERS]
+    return [of_others(value) if isinstance(value, dict) else value for value in values]
 
 
 @dataclass(frozen=True, eq=False)

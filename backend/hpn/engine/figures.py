@@ -301,20 +301,30 @@ def phase_loads(duty: Duty, gears: GearList, radial_N: FloatArray | None = None)
 def radial_at_centre(duty: Duty, gears: GearList) -> FloatArray:
     """Radial load in N of every phase that stands for where it acts, on every size; shape (N, sizes or 1, phases).
 
-    NaN where a lever acts and the shaft's centre is not known; the load itself where none is given.
+    NaN where the shaft's centre is not known and a lever acts in some phase; the load itself where none is given.
     """
     asked, phases = duty.asked, duty.phases
     x, y = asked["output_load.radial_position_mm"], asked["output_load.axial_radius_mm"]
     if np.isnan(x).all() and not (y > 0).any():
         return phases.radial_N
-    own, given = gears.columns.shaft_centre_mm[gears.first_of_size], asked["output_load.shaft_centre_mm"]
-    return bearing.radial_load_at_centre(
+    radial = bearing.radial_load_at_centre(
         radial_N=phases.radial_N,
         axial_N=phases.axial_N,
         radial_position_mm=x[..., None],
         axial_radius_mm=np.where(np.isnan(y), 0.0, y)[..., None],
-        shaft_centre_mm=np.where(np.isnan(own), given, own)[..., None],
+        shaft_centre_mm=shaft_centre_mm(duty, gears)[..., None],
     )
+    return np.where(np.isnan(radial).any(axis=-1, keepdims=True), np.nan, radial)
+
+
+def shaft_centre_mm(duty: Duty, gears: GearList) -> FloatArray:
+    """Distance x_c in mm of the shaft's centre of every size, shape (N, sizes): the catalogue's, else as it is given.
+
+    NaN where neither is known.
+    """
+    own = gears.columns.shaft_centre_mm[gears.first_of_size]
+    given = duty.asked.shaft_centre_mm([gears.rows[place].size for place in gears.first_of_size.tolist()])
+    return np.where(np.isnan(own), given, own)
 
 
 def _bearing_loads(duty: Duty, gears: GearList, radial_N: FloatArray) -> tuple[FloatArray, FloatArray]:

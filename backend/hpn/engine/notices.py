@@ -11,6 +11,7 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.catalogue.gear import Gear
 from hpn.engine.duty import unasked_shaft_load_N
 from hpn.engine.evaluation import SUITABLE, Evaluation
+from hpn.engine.figures import shaft_centre_mm
 from hpn.engine.motor_torques import known_efficiency, leaves_curve
 from hpn.engine.notice import AREAS, Notice, notice
 from hpn.physics.equations import ROUNDING, FloatArray
@@ -181,19 +182,21 @@ def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Ite
     asked_h = evaluation.case.asked["requirements.life_h"].item(index)
     if not np.isnan(asked_h) and (load.life_h, load.life_basis) == (BEARING_LIFE_H, "L50"):
         yield notice("bearing_life_at_default", gear_life_h=asked_h, bearing_life_h=load.life_h)
-    yield from _on_the_lever(load, evaluation)
+    yield from _on_the_lever(load, evaluation, index)
     yield notice("bearing_life_basis")
     if _is_unlimited(evaluation.case.figures.bearing_life_L50_h, index):
         yield notice("bearing_life_unlimited")
 
 
-def _on_the_lever(load: OutputLoad, evaluation: Evaluation) -> Iterable[Notice]:
+def _on_the_lever(load: OutputLoad, evaluation: Evaluation, index: int) -> Iterable[Notice]:
     if load.radial_position_mm is None and not load.axial_radius_mm:
         yield notice("bearing_load_position")
         return
     yield notice("bearing_lever")
-    lacking = {gear.name for gear in evaluation.gears.rows if gear.shaft_centre_mm is None}
-    if load.shaft_centre_mm is None and lacking and (load.radial_position_mm or load.axial_radius_mm):
+    gears = evaluation.gears
+    centres = np.broadcast_to(shaft_centre_mm(evaluation.case.duty, gears)[index], gears.first_of_size.shape)
+    lacking = {gears.rows[place].name for place in gears.first_of_size[np.isnan(centres)].tolist()}
+    if lacking and (load.radial_position_mm or load.axial_radius_mm):
         yield notice("bearing_centre_unknown", names=", ".join(sorted(lacking)))
 
 

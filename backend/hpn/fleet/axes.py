@@ -5,7 +5,7 @@ what is given and on texts, not on numbers: axes that are alike in that have a p
 for all of a pattern. A rejected axis gets its reasons from the models themselves (`faults.py`).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -22,7 +22,7 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.batch import chunks_of
 from hpn.engine.duty import Asked, Duty, Phases, least_torque
-from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
+from hpn.fleet.columns import AXIS, COLUMNS, NUMBER, Column, is_list, is_text
 from hpn.physics.equations import FloatArray
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.titles import LONGEST_NAME, is_title
@@ -165,12 +165,15 @@ class Axes:
         """A number for each axis, the same where a column makes no difference to the rules."""
         if COLUMNS.all[name].kind == "boolean":  # null, false or true
             return (np.nan_to_num(self._numbers(name), nan=-1.0) + 1).astype(np.intp)
-        if _is_number(name):
+        if _is_number(name) and not (COLUMNS.all[name].by_size and is_text(self._table[name].type)):
             given = ~np.isnan(self._numbers(name))
             return (self._any_phase(given) if name in COLUMNS.phases else given).astype(np.intp)
         numbers: dict[object, int] = {}
         texts = self._table[name].to_pylist()
-        keys = (tuple(text) if isinstance(text, list) else text for text in texts)
+        keys: Iterable[object] = (tuple(text) if isinstance(text, list) else text for text in texts)
+        if COLUMNS.all[name].by_size:
+            given = ~np.isnan(self._numbers(name))
+            keys = (is_number or text for text, is_number in zip(texts, given.tolist(), strict=True))
         return np.array([numbers.setdefault(key, len(numbers)) for key in keys], np.intp)
 
     def _judged(self, cells: Mapping[str, Any]) -> tuple[Application, GearList] | None:
@@ -205,7 +208,9 @@ class Axes:
         assert self._asked is not None
         numbers = {path: values[axes, None] for path, values in self._wanted.items()}
         texts = (getattr(self._asked, name)[self._pattern[axes]] for name in TEXTS)
-        return Duty(Phases(*series), Asked(numbers, *[*texts, self._numbers(REVERSES)[axes, None]]))
+        of_sizes = self._asked.shaft_centres_mm.items()
+        centres = {size: values[self._pattern[axes]] for size, values in of_sizes}
+        return Duty(Phases(*series), Asked(numbers, *[*texts, self._numbers(REVERSES)[axes, None], centres]))
 
     @cached_property
     def _phases(self) -> dict[str, FloatArray]:
@@ -253,6 +258,10 @@ def _lengths(column: pa.ChunkedArray) -> IntArray:
 
 
 def _values(column: pa.ChunkedArray) -> FloatArray:
+    """Numbers of cells; of texts only those that are a number."""
+    if is_text(column.type):
+        texts = pc.ascii_trim_whitespace(column)
+        column = pc.if_else(pc.match_substring_regex(texts, f"^({NUMBER.pattern})$", ignore_case=True), texts, None)
     values = np.asarray(pc.cast(column, pa.float64(), safe=False).to_numpy())
     wrong = np.isnan(values)
     if wrong.any() and column.null_count < wrong.sum():

@@ -1,10 +1,12 @@
 """The columns of a table of axes: one for every field of an application, with the bounds of the models.
 
 A column is named by its path with dots, such as `requirements.life_h`; a field of a phase by itself, and it holds a
-list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. Names, kinds and bounds are read from the
+list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. A column of numbers that may be given by size
+holds numbers, or texts of which each is a number or an object in JSON. Names, kinds and bounds are read from the
 models' JSON Schema, so that a new input needs no line here.
 """
 
+import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,11 +17,16 @@ import pyarrow as pa
 import pyarrow.types as kinds
 
 from hpn.application.input_fields import FIELDS, PHASE_FIELDS, InputField
+from hpn.application.unique import require_unique
 from hpn.fleet.uuids import is_uuid
 
 Json = dict[str, Any]
 
 AXIS = "axis"
+SIZE_SHOWN = 40
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
+"""A number as it stands in a cell of text."""
+
 PAUSE = ("duty_cycle", "pause_s")
 
 
@@ -32,7 +39,7 @@ class Column(InputField):
     @property
     def type(self) -> pa.DataType:
         """Arrow type that its cells are read as."""
-        item = {"string": pa.string(), "boolean": pa.bool_()}.get(self.kind, pa.float64())
+        item = {"string": pa.string(), "boolean": pa.bool_()}.get("string" if self.by_size else self.kind, pa.float64())
         return pa.list_(item) if self.is_list else item
 
     def takes(self, given: pa.DataType, wanted: pa.DataType) -> bool:
@@ -46,6 +53,8 @@ class Column(InputField):
 
     def _takes_item(self, given: pa.DataType) -> bool:
         if kinds.is_null(given):
+            return True
+        if self.by_size and is_text(given):
             return True
         if self.kind in ("string", "boolean"):
             return is_text(given) if self.kind == "string" else bool(kinds.is_boolean(given))
@@ -114,6 +123,8 @@ class Columns:
             return (str(location[3]) if len(location) > 3 else "torque_Nm" if not number else "speed_rpm"), number
         names = tuple(part for part in location if isinstance(part, str))
         places = [f"item {part + 1}" for part in location if isinstance(part, int)]
+        if (column := self.at.get(names[:-1])) is not None and column.by_size:
+            return column.name, f"size {names[-1][:SIZE_SHOWN]}"
         name = next((c.name for c in self.others.values() if c.path == names), ".".join(names))
         return name, ", ".join(places)
 
@@ -132,8 +143,22 @@ def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]
 
 
 def _plain(value: Any, column: Column) -> Any:
-    """A cell as the models take it: any kind of number as a float."""
+    """A cell as the models take it: any kind of number as a float, of a text by size what it says in JSON."""
+    if column.by_size and isinstance(value, str):
+        return _by_size(value)
     return value if column.kind in ("string", "boolean") or value is None else float(value)
+
+
+def _by_size(text: str) -> Any:
+    """Number or object of a text; the text itself, which the models refuse, where it is neither."""
+    if NUMBER.fullmatch(text.strip()):
+        return float(text)
+    try:
+        require_unique(text.encode())
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        return text
+    return found if isinstance(found, dict) else text
 
 
 def _column(name: str, field: InputField, *, is_list: bool) -> Column:

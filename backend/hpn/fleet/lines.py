@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, INDEX, Column, is_list
+from hpn.fleet.columns import AXIS, COLUMNS, INDEX, NUMBER, Column, is_list
 from hpn.fleet.order import FleetError
 from hpn.fleet.tables import Batch, Fault, Progress, Table
 from hpn.words.wording import N_
@@ -33,7 +33,6 @@ MOST_BROKEN = 100_000
 MOST_SHOWN = 60
 OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 BOM = b"\xef\xbb\xbf"
-NUMBER = r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$|^[+-]?(nan|inf|infinity)$"
 NO_NUMBER = N_("must be a number with a decimal point, such as 9.3")
 NO_FLAG = N_("must be true or false")
 NO_NUMBERS = N_("must be a JSON list of numbers, such as [40, 32.5]")
@@ -301,7 +300,7 @@ def _as_utf8(content: bytes) -> bytes:
 
 def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:
     """Values of cells of CSV, and the rows of those that are none, with what would be right."""
-    if column is None or (column.kind == "string" and not is_list(wanted)):
+    if column is None or pa.types.is_string(wanted):
         broken = pc.fill_null(pc.match_substring(texts, REPLACED), False)
         return pc.if_else(broken, None, texts), [(int(row), NOT_UTF8) for row in np.flatnonzero(np.asarray(broken))]
     if is_list(wanted):
@@ -312,7 +311,7 @@ def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tupl
         is_flag = pc.match_substring_regex(texts, "^(true|false|0|1)$", ignore_case=True)
         wrong = np.flatnonzero(np.asarray(pc.fill_null(pc.invert(is_flag), False)))
         return pc.if_else(is_flag, texts, None).cast(wanted), [(int(row), NO_FLAG) for row in wrong]
-    numbers = pc.match_substring_regex(texts, NUMBER, ignore_case=True)
+    numbers = pc.match_substring_regex(texts, f"^({NUMBER.pattern})$", ignore_case=True)
     wrong = np.flatnonzero(np.asarray(pc.fill_null(pc.invert(numbers), False)))
     if len(wrong):
         texts = pc.if_else(numbers, texts, None)

@@ -1,7 +1,7 @@
 """Tables of axes in lines of JSON."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 from operator import attrgetter
@@ -11,6 +11,7 @@ import msgspec
 import pyarrow as pa
 
 from hpn.application.faults import NOT_A_NUMBER
+from hpn.application.shaft_centre import NO_CENTRE
 from hpn.application.unique import RepeatedNameError, require_unique
 from hpn.fleet.columns import AXIS, COLUMNS, is_list
 from hpn.fleet.lines import BOM, MOST_BROKEN, NO_FLAG, LinesTable, cut, no_list
@@ -31,6 +32,9 @@ READ_AS: dict[tuple[bool, bool], Any] = {
     (True, True): list[str | None],
 }
 """Types that msgspec reads cells as, by columns of texts or numbers, of lists or not."""
+
+BY_SIZE = float | dict[str, float | None]
+"""Type of a number that may be given by size."""
 
 
 class NdjsonTable(LinesTable):
@@ -84,6 +88,7 @@ class NdjsonTable(LinesTable):
             if name != AXIS:
                 kind, is_listed = COLUMNS.all[name].kind, is_list(self.type_of(name))
                 kinds[name] = bool if kind == "boolean" else READ_AS[kind == "string", is_listed]
+                kinds[name] = BY_SIZE if COLUMNS.all[name].by_size else kinds[name]
         return kinds | dict.fromkeys(self.ignored, Any)
 
     @cached_property
@@ -120,7 +125,7 @@ class NdjsonTable(LinesTable):
                 rows.append(msgspec.convert(cells, self._row_type) if cells else self._row_type())
                 faults += [Fault(place, *fault) for fault in wrong]
         columns = {
-            name: pa.array(list(map(attrgetter(field), rows)), self.type_of(name))
+            name: pa.array(_cells(map(attrgetter(field), rows), name), self.type_of(name))
             for field, name in self._fields.items()
             if name not in self.ignored
         }
@@ -152,13 +157,20 @@ class NdjsonTable(LinesTable):
             expected = "an integer" if pa.types.is_integer(self.axis_type) else "text"
             return f"must be {expected}, as the first valid axis is, not {_shown(value)}"
         column = COLUMNS.all[name]
-        right, kind = RIGHT.get(column.kind, (NOT_A_NUMBER, float))
+        right, kind = (NO_CENTRE, BY_SIZE) if column.by_size else RIGHT.get(column.kind, (NOT_A_NUMBER, float))
         if not is_list(self.type_of(name)):
             return f"{right}, not {_shown(value)}"
         if not isinstance(value, list):
             return no_list(column)
         place, item = next((place, item) for place, item in enumerate(value, start=1) if not _is(item, kind))
         return f"{'phase' if name in COLUMNS.phases else 'item'} {place}: {right}, not {_shown(item)}"
+
+
+def _cells(values: Iterable[Any], name: str) -> list[Any]:
+    """Values of a column as they stand in a table: of numbers that may be given by size the JSON."""
+    if name == AXIS or not COLUMNS.all[name].by_size:
+        return list(values)
+    return [None if value is None else msgspec.json.encode(value).decode() for value in values]
 
 
 def _may_repeat_a_name(line: bytes) -> bool:

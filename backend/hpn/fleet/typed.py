@@ -78,6 +78,13 @@ class TypedTable(Table):
         except UNREADABLE as error:
             raise self.unreadable(error, where) from None
 
+    def type_of(self, name: str) -> pa.DataType:
+        """Type that a column is read as: numbers that may be given by size are numbers or texts, as they stand."""
+        wanted = super().type_of(name)
+        if name == AXIS or not COLUMNS.all[name].by_size or is_text(plain_type(self.given.field(name).type)):
+            return wanted
+        return pa.float64()
+
     def wrong_type(self, name: str) -> str:
         if name != AXIS and name not in COLUMNS.all:
             return ""
@@ -104,7 +111,9 @@ class TypedTable(Table):
 
 
 def _words(column: Column, wanted: pa.DataType) -> str:
-    item = "texts" if column.kind == "string" else "numbers"
+    item = (
+        "texts" if column.kind == "string" else "numbers, or objects by size in JSON," if column.by_size else "numbers"
+    )
     return f"lists of {item}" if is_list(wanted) else item
 
 

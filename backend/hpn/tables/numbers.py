@@ -21,7 +21,7 @@ from hpn.words.reader import Reader
 from hpn.words.units import NUMBER, SYMBOLS
 from hpn.words.wording import N_, Sentence, Typed
 
-Kind = Literal["number", "whole", "text", "flag"]
+Kind = Literal["number", "whole", "text", "flag", "by_size"]
 
 WRITTEN, WAS = "written", "was"
 """Fields that say how the others are written, and which exact numbers stand behind them."""

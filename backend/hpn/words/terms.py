@@ -51,6 +51,9 @@ ENVELOPE_BASIS: Mapping[str, str] = {
 LIFE_BASES: Mapping[str, str] = {"L50": N_("L50 (50 % survive)"), "L10": N_("L10 (90 % survive)")}
 """Bases of a bearing life."""
 
+FOR_OTHERS = N_("others")
+"""All sizes that have no figure of their own, beside those that have."""
+
 POSITION_ERROR_AT: Mapping[str, str] = {"cycle": N_("over the whole cycle"), "rest": N_("at rest alone")}
 """Parts of the cycle over which the position error counts."""
 

@@ -4,18 +4,24 @@ import math
 from collections.abc import Iterable
 
 from hpn.application import OutputLoad
-from hpn.engine.figures import phase_loads, radial_at_centre
+from hpn.application.shaft_centre import by_size
+from hpn.engine.figures import phase_loads, radial_at_centre, shaft_centre_mm
 from hpn.explain.calculation.formula import Constant, Formula, Largest, PhaseValues, Root, Term, Variable, over_phases
 from hpn.explain.calculation.shaft import notes_on_shaft, of_shaft
 from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
 from hpn.physics import bearing
-from hpn.words.quantities import CANDIDATE
+from hpn.words.quantities import CANDIDATE, INPUTS
 from hpn.words.terms import ENVELOPE_BASIS
 from hpn.words.wording import N_, Sentence
 
 SHOWN_LOADS = 6
 SUPPLIED = Sentence(N_("P is the ratio of the load to the curve that you supplied, in the load’s own direction."))
 P, CUBE = Variable("P"), Constant(3)
+
+CENTRE = "output_load.shaft_centre_mm"
+CENTRE_OF_CATALOGUE = N_("x_c is the figure of {name} in your catalogue supplement, which goes before a typed one.")
+CENTRE_OF_SIZE = N_("x_c is the distance that you gave for {name}.")
+CENTRE_OF_OTHERS = N_("x_c is the distance that you gave for all sizes without one of their own.")
 
 
 def bearing_steps(sheet: Sheet) -> Iterable[Step]:
@@ -43,7 +49,7 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     worst = max(phases, key=loads.values.item)
     index = {place: "" if len(phases) == 1 else str(place + 1) for place in phases}
     basis = SUPPLIED if load.model == "digitised" else Sentence(ENVELOPE_BASIS[load.model])
-    notes = [basis, *notes_on_shaft(sheet)]
+    notes = [basis, *notes_on_shaft(sheet), *_note_on_centre(sheet, load)]
     lines: list[Line] = []
     if load.model != "digitised":
         shown = sorted({*phases[: SHOWN_LOADS - 1], worst})
@@ -62,7 +68,7 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
 def _at_centre(sheet: Sheet, P: Term, place: int) -> Iterable[Line]:
     """Radial load at the shaft's centre that stands for where the loads act, where that is given."""
     x, y = sheet.duty.asked["output_load.radial_position_mm"].item(), sheet.given("output_load.axial_radius_mm")
-    x_c = sheet.rating("shaft_centre_mm") or sheet.given("output_load.shaft_centre_mm")
+    x_c = _centre(sheet)
     if x_c is None or y is None or (math.isnan(x) and not y.value):
         return
     F_R, F_A = (values.term(P.symbol.index, place) for values in (sheet.radial, sheet.axial))
@@ -72,6 +78,21 @@ def _at_centre(sheet: Sheet, P: Term, place: int) -> Iterable[Line]:
     if y.value:
         formula = formula + F_A * (y / x_c)
     yield Line(_equivalent_radial(sheet, P, place), formula)
+
+
+def _centre(sheet: Sheet) -> Term | None:
+    """Distance of the shaft's centre that counts for the gear, None where it is not known."""
+    x_c = shaft_centre_mm(sheet.duty, sheet.gears).item()
+    return None if math.isnan(x_c) else Term(Variable.of(INPUTS[CENTRE].symbol), x_c, "mm")
+
+
+def _note_on_centre(sheet: Sheet, load: OutputLoad) -> list[Sentence]:
+    """Note on where that distance comes from, where a lever acts."""
+    if _centre(sheet) is None or radial_at_centre(sheet.duty, sheet.gears) is sheet.duty.phases.radial_N:
+        return []
+    own = CENTRE_OF_SIZE if sheet.gear.size in by_size(load.shaft_centre_mm) else CENTRE_OF_OTHERS
+    text = own if sheet.gear.shaft_centre_mm is None else CENTRE_OF_CATALOGUE
+    return [Sentence(text, {"name": sheet.gear.name})]
 
 
 def _equivalent_radial(sheet: Sheet, P: Term, place: int) -> Term:

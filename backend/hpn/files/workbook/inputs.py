@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 
-from hpn.account.inputs import LOADS, REQUIREMENTS, WORDS, value_of
+from hpn.account.inputs import LOADS, REQUIREMENTS, WORDS, value_of, written
 from hpn.account.motion import MOTION_TITLE, MOVES, MOVES_TITLE, mechanism_of, moves_of
 from hpn.account.motion import WORDS as MOTION_WORDS
 from hpn.application.motion import Motion
-from hpn.files.export import Export
 from hpn.files.report.tables import columns, numbers
 from hpn.files.workbook.sheet import Cell, Line, Sheet
 from hpn.words.quantities import INPUTS
@@ -20,7 +19,7 @@ WIDTHS = (44, 14, 14, 14, 14, 14, 14, 14, 14)
 def write_inputs(sheet: Sheet) -> None:
     """Write the sheet; phases stand last, so that any number has room."""
     for title, paths in ((N_("Loads"), LOADS), (N_("Requirements"), REQUIREMENTS)):
-        sheet.lines(title, (Line(INPUTS[path], _value(sheet.export, path), suffix_of(path)) for path in paths))
+        sheet.lines(title, (_line(sheet, path) for path in paths))
     if (motion := sheet.export.application.duty_cycle.motion) is not None:
         _write_motion(sheet, motion)
     cycle = sheet.export.application.duty_cycle
@@ -33,8 +32,14 @@ def write_inputs(sheet: Sheet) -> None:
     sheet.page(WIDTHS)
 
 
-def _value(export: Export, path: str) -> Cell:
-    value = value_of(export.equipped, path)
+def _line(sheet: Sheet, path: str) -> Line:
+    value = value_of(sheet.export.equipped, path)
+    if isinstance(value, dict):  # with the unit behind each number
+        return Line(INPUTS[path], written(value, path, sheet.reader), "")
+    return Line(INPUTS[path], _cell(value), suffix_of(path))
+
+
+def _cell(value: float | str | bool | tuple[str | int, ...] | None) -> Cell:
     if isinstance(value, tuple):
         return ", ".join(map(str, value))
     return WORDS.get(str(value), str(value)) if isinstance(value, str | bool) else value

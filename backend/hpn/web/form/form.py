@@ -7,6 +7,7 @@ from urllib.parse import urlencode
 from hpn.application import Application
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
+from hpn.tables.by_size import BySize
 from hpn.tables.inputs import NAME
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.helpers import BodyTable
@@ -149,14 +150,18 @@ def address_of_empty(form: Form) -> str:
 def for_reader(form: Form, reader: Reader) -> Form:
     """The same form with what the reader's fields show: their units and decimal mark."""
     units = units_of(form.texts.get("mech", "").strip())
-    tables = (*form.rows, *form.moves, *form.bodies.rows, form.texts)
+    sized = {name: text for name, text in form.texts.items() if isinstance(text, BySize)}
+    single = {name: text for name, text in form.texts.items() if name not in sized}
+    tables = (*form.rows, *form.moves, *form.bodies.rows, single)
     cells = [(text, units[name]) for table in tables for name, text in table.items() if name in units]
+    cells += [(part.number, units[name]) for name, text in sized.items() for part in text.parts]
     shown = numbers.to_fields(cells, reader, form.written)
     texts = iter(shown.texts)
     rows, moves, bodies, (named,) = (
         tuple({name: next(texts) if name in units else text for name, text in table.items()} for table in part)
-        for part in (form.rows, form.moves, form.bodies.rows, (form.texts,))
+        for part in (form.rows, form.moves, form.bodies.rows, (single,))
     )
+    named |= {name: text.shown([next(texts) for _ in text.parts], reader) for name, text in sized.items()}
     return replace(
         form,
         rows=rows,

@@ -6,13 +6,16 @@ from dataclasses import dataclass
 
 from hpn.application import MOST_WISHES
 from hpn.application.motion import MAXIMUM_MOVES
+from hpn.application.shaft_centre import MOST_SIZES
 from hpn.physics.motion.bodies import MOST_BODIES
+from hpn.tables.by_size import BySize, by_size
 from hpn.tables.numbers import WAS, WRITTEN
 from hpn.web.form.labels import LABELS
 from hpn.web.form.rows import OF_ANY_ROW, OPTIONAL, SHARED, Rows, groups_of, shown_columns
 from hpn.web.form.symbols import (
     BODY_BY_NAME,
     BY_NAME,
+    BY_SIZE,
     MECHANISM_SYMBOLS,
     MOVE_BY_LEAF,
     MOVE_BY_NAME,
@@ -94,6 +97,8 @@ class Given:
             self.labels.setdefault(name, []).append(text)
         elif name not in BY_NAME:
             self.unknown.append(name)
+        elif name in BY_SIZE:
+            self._add_by_size(name, by_size(text))
         elif not BY_NAME[name].many:
             self.single.setdefault(name, []).append(text)
             if text.strip():  # the plain form submits blank fields too: they count as absent
@@ -102,6 +107,14 @@ class Given:
             texts = self.lists.setdefault(name, [])
             if len(texts) <= MOST_WISHES:  # one more than there may be is enough to refuse them
                 texts.append(text)
+
+    def _add_by_size(self, name: str, text: BySize) -> None:
+        """Take numbers by size, which may be repeated; of those without a size there is one."""
+        self.single.setdefault(name, []).extend(part.number for part in text.parts if not part.size)
+        before = self.scalars.get(name)
+        parts = (*(by_size(before).parts if before else ()), *text.parts)
+        if parts:
+            self.scalars[name] = BySize(parts[: MOST_SIZES + 1])  # one more than there may be is enough to refuse them
 
     @property
     def has_motion(self) -> bool:

@@ -9,11 +9,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from msgspec.structs import replace as with_values
 from pydantic import ValidationError
 
-from hpn.application import Application
+from hpn.application import OTHERS, Application
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
+from hpn.tables.by_size import BySize, Part, by_size
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
 from hpn.web.form.form import Form
@@ -26,6 +28,7 @@ from hpn.web.form.rows import TEXT, expanded, filled
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
+    BY_SIZE,
     MOTION_PATH,
     MOVE_BY_LEAF,
     PHASE_BY_LEAF,
@@ -36,8 +39,9 @@ from hpn.web.form.symbols import (
 )
 from hpn.web.form.ways import CYCLE_NAMES, Pairs, switched, taken_over
 from hpn.words.reader import Reader
+from hpn.words.terms import FOR_OTHERS
 from hpn.words.titles import LONGEST_NAME, faults_of
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, Typed
 
 _UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
 """Characters without width, which come with links copied from documents that break their lines with them."""
@@ -138,7 +142,17 @@ def in_wire_units(pairs: Pairs) -> tuple[Pairs, str | None]:
     """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
     # In the texts of people such characters join emoji and letters.
     seen = [(visible(name), text if name in (*LABELS, NAME.role) else visible(text)) for name, text in pairs]
-    return numbers.to_wire(seen, units_of(dict(seen).get("mech", "").strip()))
+    units = units_of(dict(seen).get("mech", "").strip())
+    pieces = [(name, by_size(text).parts if name in BY_SIZE else (Part("", text),)) for name, text in seen]
+    wire, marker = numbers.to_wire([(name, part.number) for name, parts in pieces for part in parts], units)
+    texts = iter(wire)
+    found: list[tuple[str, str]] = []
+    for name, parts in pieces:
+        if name in BY_SIZE:
+            found.append((name, BySize(Part(part.size, next(texts)[1]) for part in parts)))
+        elif name not in (numbers.WRITTEN, numbers.WAS):
+            found.append(next(texts))
+    return found, marker
 
 
 def _list_problems(given: Given) -> Iterable[FieldProblem]:
@@ -177,11 +191,42 @@ def _document(
     document: dict[str, Any] = {"duty_cycle": cycle}
     for name, text in given.scalars.items():
         symbol = BY_NAME[name]
+        if name in BY_SIZE:
+            document.setdefault(symbol.path[0], {})[symbol.path[1]] = _numbers_by_size(name, by_size(text), problems)
+            continue
         _put(document, symbol.path, symbol, text, FieldProblem(name, None, Sentence("")), problems)
     for name, texts in given.lists.items():
         values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
         document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
     return document, problems
+
+
+def _numbers_by_size(name: str, text: BySize, problems: list[FieldProblem]) -> dict[str, float] | float | None:
+    """Numbers by size as the application has them, or the one number for all; what can't be read is reported."""
+    found: dict[str, float] = {}
+    for part in text.parts:
+        value = read_value(part.number, "number")
+        if isinstance(value, Sentence):
+            problems.append(FieldProblem(name, None, _on_size(part.place, value) if part.size else value))
+        elif part.place in found and part.size:
+            template = N_("{size} is given twice: give each size once")
+            problems.append(FieldProblem(name, None, Sentence(template, {"size": _size(part.place)})))
+        else:
+            found[part.place] = float(value)
+    return found[OTHERS] if found.keys() == {OTHERS} else found
+
+
+def _on_size(size: str, said: Sentence) -> Sentence:
+    """Sentence on the number of one size, which is part of a text: a form offers no number in place of that."""
+    parts = {
+        name: with_values(value, whole=False) if isinstance(value, Typed) else value
+        for name, value in said.values.items()
+    }
+    return Sentence("{size}: {said}", {"size": _size(size), "said": with_values(said, values=parts)})
+
+
+def _size(size: str) -> Sentence:
+    return Sentence("{text}", {"text": FOR_OTHERS if size == OTHERS else size[:20]}, ("text",))
 
 
 def _with_two_phases(problem: FieldProblem, texts: Sequence[str]) -> FieldProblem:
@@ -252,8 +297,16 @@ def _validated(
         consequence = known and error["type"] in ("no_motion", "no_load")
         refused_phases = error["type"] == "too_short" and any(map(filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:
-            problems.append(FieldProblem(name, index, refusal_of(error)))
+            problems.append(FieldProblem(name, index, _refused(name, error)))
     return None, problems
+
+
+def _refused(name: str, error: Any) -> Sentence:
+    """Text for an error of the model, which says the size of a number by size."""
+    *path, size = error["loc"]
+    if name in BY_SIZE and tuple(path) == BY_NAME[name].path:
+        return _on_size(str(size), refusal_of({**error, "loc": path}))
+    return refusal_of(error)
 
 
 def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[str, int | None]:
@@ -266,4 +319,6 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
             return symbol.name if symbol else first, rows[k] if k < len(rows) else k
     if path in BY_PATH:
         return BY_PATH[path].name, index
+    if path[:-1] in BY_PATH and BY_PATH[path[:-1]].name in BY_SIZE:
+        return BY_PATH[path[:-1]].name, None
     return _PARTS.get(path, ".".join(path)), None

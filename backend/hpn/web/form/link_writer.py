@@ -2,12 +2,24 @@
 
 from collections.abc import Iterator
 from itertools import groupby
+from typing import Any
 from urllib.parse import quote
 
 from pydantic import BaseModel
 
-from hpn.application import Application, Brake, Drive, DutyCycle, EmergencyStop, Motor, OutputLoad, Requirements
+from hpn.application import (
+    OTHERS,
+    Application,
+    Brake,
+    Drive,
+    DutyCycle,
+    EmergencyStop,
+    Motor,
+    OutputLoad,
+    Requirements,
+)
 from hpn.application.motion import Motion
+from hpn.tables.by_size import BySize, Part
 from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
 
 _EMPTY_LOAD = OutputLoad()
@@ -45,7 +57,7 @@ def to_link(application: Application) -> str:
         for field, symbol, default, many in fields:
             if (value := values[field]) == default:
                 continue
-            for item in value if many else (value,):
+            for item in value if many else _items(value):
                 link += f"&{symbol}={_written(item)}"
     load = application.output_load
     # A load case without a figure of its own must still be seen to exist.
@@ -96,12 +108,21 @@ def _parts(application: Application) -> tuple[BaseModel | None, ...]:
     return application.duty_cycle, stop, stop and stop.brake, load, load and load.drive, asked, application, asked.motor
 
 
+def _items(value: Any) -> Iterator[Any]:
+    """Values of a field, one after the other: of numbers by size each with its size, but for that of all others."""
+    if not isinstance(value, dict):
+        yield value
+        return
+    for size, number in value.items():
+        yield number if size == OTHERS else BySize([Part(size, _written(number))])
+
+
 def _written(value: float | str) -> str:
     if isinstance(value, float):
         return _shortened(repr(value))
     if isinstance(value, int):
         return str(int(value))
-    return quote(value)
+    return quote(value, safe="/:" if isinstance(value, BySize) else "/")
 
 
 def _shortened(numbers: str) -> str:

@@ -26,9 +26,10 @@ from hpn.words.wording import N_, Named
 class Symbol:
     """A query name, the field of the application that it stands for, and what the form says beside it.
 
-    `choices` are the codes of a text, the first being what counts where none is given. `offered` is a figure of the
-    gears whose values are offered while typing, or such values themselves. `supplied` names the table of the catalogue
-    without which a choice is not offered.
+    A number `by_size` is one for all sizes, or one for each of some, repeated in links. `choices` are the codes of a
+    text, the first being what counts where none is given. `offered` is a figure of the gears whose values are offered
+    while typing, or such values themselves. `supplied` names the table of the catalogue without which a choice is not
+    offered.
     """
 
     name: str
@@ -151,7 +152,11 @@ SYMBOLS = (
     Symbol(
         "xc",
         ("output_load", "shaft_centre_mm"),
-        hint=N_("From the shoulder, at least: not published, so take it from the manufacturer’s drawing."),
+        "by_size",
+        hint=N_(
+            "From the shoulder, at least: not published, so take it from the manufacturer’s drawing. One for all "
+            "sizes, or by size: 20A: 21; others: 18"
+        ),
     ),
     Symbol(
         "fm",
@@ -412,7 +417,14 @@ AXIS_INPUTS = Inputs(
 """Inputs that a table of axes may have columns for."""
 
 
+BY_SIZE = frozenset(symbol.name for symbol in SYMBOLS if symbol.kind == "by_size")
+
+
 def units_of(mechanism: str) -> Mapping[str, str]:
     """Names that take a number, and the suffix of its unit, which of a move depends on the mechanism."""
     symbols = (*move_symbols(mechanism), *_SINGLE, *BODY_SYMBOLS)
-    return {symbol.name: symbol.unit for symbol in symbols if symbol.kind in ("number", "whole") and not symbol.many}
+    return {
+        symbol.name: symbol.unit
+        for symbol in symbols
+        if symbol.kind in ("number", "whole", "by_size") and not symbol.many
+    }

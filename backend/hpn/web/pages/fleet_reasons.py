@@ -6,13 +6,14 @@ Fixed texts are translated as they are; of those with values the template is fou
 import re
 from collections.abc import Sequence
 
-from hpn.engine.allowed import NOT_THERE, NOT_TOGETHER
+from hpn.engine.allowed import LOOKS_LIKE, NOT_THERE, NOT_TOGETHER
 from hpn.words.wording import N_, Sentence
 
 TEMPLATES = (
     N_("row {number}: {reason}"),
     N_("phase {number}: {reason}"),
     N_("item {number}: {reason}"),
+    N_("size {size}: {reason}"),
     N_("the row has {found} cells where the header has {expected}, in {row}"),
     N_("the line is not a JSON object: {error}, in {found}"),
     N_("must be an integer, as the first valid axis is, not {found}"),
@@ -28,6 +29,7 @@ TEMPLATES = (
     N_("must be a number, such as 9.3, not {found}"),
     N_("must be text, not {found}"),
     N_("must be '{expected}'"),
+    LOOKS_LIKE,
     NOT_THERE,
     NOT_TOGETHER,
 )

@@ -1,0 +1,62 @@
+"""Numbers by size as people type them: `21` for all sizes, or `20A: 21; 32A: 30; others: 18`."""
+
+from collections.abc import Iterable
+from functools import cache
+from typing import NamedTuple
+
+from hpn.application.shaft_centre import OTHERS, canonical_place
+from hpn.words.reader import LANGUAGES, Reader
+from hpn.words.terms import FOR_OTHERS
+
+
+class Part(NamedTuple):
+    """A number as a text, and the size that it is for as it is written; blank where it is for all others."""
+
+    size: str
+    number: str
+
+    @property
+    def place(self) -> str:
+        """Size in the handbook's spelling, or `others`; anything else as it is written."""
+        is_others = not self.size or self.size.casefold() in _words_for_others()
+        return OTHERS if is_others else str(canonical_place(self.size))
+
+
+class BySize(str):
+    """Numbers by size in one text, `20A:21;18`, with their parts."""
+
+    parts: tuple[Part, ...]
+
+    def __new__(cls, parts: Iterable[Part]) -> "BySize":
+        """A text that behaves as its parts in a link would."""
+        kept = tuple(parts)
+        text = super().__new__(cls, ";".join(f"{size}:{number}" if size else number for size, number in kept))
+        text.parts = kept
+        return text
+
+    def shown(self, numbers: Iterable[str], reader: Reader) -> str:
+        """The text for a field of a reader, with numbers as the reader writes them."""
+        found = list(zip(self.parts, numbers, strict=True))
+        if len(found) == 1 and not self.parts[0].size:
+            return found[0][1]
+        others = reader.text(FOR_OTHERS)
+        return "; ".join(f"{others if part.place == OTHERS else part.size}: {number}" for part, number in found)
+
+
+def by_size(text: str) -> BySize:
+    """Parts of a text, which a semicolon divides; the size of each stands before a colon."""
+    if isinstance(text, BySize):
+        return text
+    parts = []
+    for piece in filter(str.strip, text.split(";")):
+        size, colon, number = piece.partition(":")
+        is_sized = bool(colon and size.strip())
+        parts.append(
+            Part(size.strip(), number.strip()) if is_sized else Part("", piece.strip() if ";" in text else piece)
+        )
+    return BySize(parts)
+
+
+@cache
+def _words_for_others() -> frozenset[str]:
+    return frozenset({OTHERS, *(Reader(language).text(FOR_OTHERS).casefold() for language in LANGUAGES)})
