@@ -26,6 +26,9 @@ TEXTS = (
     *("requirements.motor.designation", "requirements.position_error_at"),
 )
 
+CENTRE = "output_load.shaft_centre_mm"
+"""A number, or an object by size, which stands as JSON in tables."""
+
 Row = dict[str, Any]
 
 AXES = [
@@ -51,7 +54,7 @@ def row_of(axis: str | int, application: Json) -> Row:
 def _flat(part: Json, path: str = "") -> Row:
     row: Row = {}
     for name, value in part.items():
-        if isinstance(value, dict):
+        if isinstance(value, dict) and f"{path}{name}" != CENTRE:
             row |= _flat(value, f"{path}{name}.")
         else:
             row[f"{path}{name}"] = value
@@ -98,6 +101,12 @@ FAULTS: dict[str, Callable[[Row], None]] = {
         {"emergency_stop.torque_Nm": 1.0, "emergency_stop.count": 1.5}
     ),
     "rank_by: must be": lambda row: row.update(rank_by="price"),
+    f"{CENTRE}: size 20A: must be greater than 0": lambda row: row.update(
+        {CENTRE: {"20A": 0.0}, "output_load.radial_N": 1.0}
+    ),
+    f"{CENTRE}: size 12A: the catalogue has no 12A; it looks like 11A": lambda row: row.update(
+        {CENTRE: {"12A": 9.0, "others": 8.0}, "output_load.radial_N": 1.0}
+    ),
     "requirements.ratios: item 1: the catalogue has no 6": lambda row: row.update({"requirements.ratios": [6]}),
     "requirements.sizes: item 2: the catalogue has no 12A": lambda row: row.update(
         {"requirements.sizes": ["11A", "12"]}
@@ -119,7 +128,13 @@ def spoiled(row: Row, fault: str) -> Row:
 def table_of(rows: Sequence[Row]) -> pa.Table:
     """Rows in list form as an Arrow table."""
     names = list(dict.fromkeys(name for row in rows for name in row))
-    return pa.table({name: pa.array([row.get(name) for row in rows], _type(name)) for name in names})
+    return pa.table({name: _column(name, [row.get(name) for row in rows]) for name in names})
+
+
+def _column(name: str, values: list[Any]) -> pa.Array:
+    if name == CENTRE and any(isinstance(value, dict) for value in values):
+        return pa.array([None if value is None else json.dumps(value) for value in values], pa.string())
+    return pa.array(values, _type(name))
 
 
 def _type(name: str) -> pa.DataType | None:
@@ -168,11 +183,13 @@ def write(path: Path, rows: Sequence[Row], *, unit_rows: int = 1000) -> Path:
 def _long_table(rows: Sequence[Row]) -> pa.Table:
     names = list(dict.fromkeys(name for row in rows for name in row))
     kinds = {name: pa.string() if name == "name" else pa.float64() for name in PHASE}
-    return pa.table({name: pa.array([row.get(name) for row in rows], kinds.get(name) or _type(name)) for name in names})
+    values = {name: [row.get(name) for row in rows] for name in names}
+    of_phases = {name: pa.array(values[name], kinds[name]) for name in names if name in kinds}
+    return pa.table({name: of_phases[name] if name in kinds else _column(name, values[name]) for name in names})
 
 
 def _cell(value: Any) -> Any:
-    return "" if value is None else json.dumps(value) if isinstance(value, list) else value
+    return "" if value is None else json.dumps(value) if isinstance(value, list | dict) else value
 
 
 # --- Reading ----------------------------------------------------------------------------------------------------------

@@ -42,6 +42,13 @@ REQUIREMENTS: Json = {
 }
 LOAD = {"radial_N": 500, "axial_N": 200, "load_coefficient": 1.2, "life_h": 20000, "model": "iso281"}
 
+OFF_CENTRE = {
+    "axial_N": 100,
+    "life_basis": "L10",
+    "radial_position_mm": 45,
+    "shaft_centre_mm": {"20A": 21, "32A": 30.5, "others": 18},
+}
+
 MOTOR = {"inertia_kgm2": 1e-4, "inertia_ratio": 5, "rated_speed_rpm": 3000}
 INERTIAS = {"load_inertia_kgm2": 0.2, "motor": MOTOR}
 
@@ -49,7 +56,7 @@ APPLICATIONS: tuple[Json, ...] = (
     cycle(phase(40, 250)),
     worked_example(),
     worked_example(output_load=LOAD, requirements=REQUIREMENTS, application_area="vacuum", rank_by="life"),
-    worked_example(output_load={"axial_N": 100, "life_basis": "L10"}, emergency_stop={"torque_Nm": 200, "count": 1000}),
+    worked_example(output_load=OFF_CENTRE, emergency_stop={"torque_Nm": 200, "count": 1000}),
     worked_example(
         emergency_stop={"brake": {"torque_Nm": 8, "rise_time_s": 0.1, "load_torque_Nm": 5, "opposing_torque_Nm": 9}},
         requirements=INERTIAS,
@@ -203,6 +210,7 @@ FIELDS = tuple(
             "least_torque_Nm",
             "rest",
         ),
+        *("shaft_centre_mm", "20A", "others"),
         *("applications", "digitised", "L10", "", "x" * 300, "\\ud800", "\\u0000", "\u202e"),
     )
 )

@@ -6,12 +6,12 @@ from urllib.parse import parse_qsl
 import pytest
 from pydantic import ValidationError
 
+from hpn.account.inputs import LOADS, given
 from hpn.application import Application, InputError, OutputLoad
 from hpn.application.faults import faults_of
 from hpn.application.input_fields import FIELDS
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
-from hpn.account.inputs import LOADS, given
 from hpn.web.form.form import Form, for_reader
 from hpn.web.form.link_reader import parse
 from hpn.web.form.link_writer import to_link

@@ -4,8 +4,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hpn.application import OTHERS, Application
+from hpn.application import Application
 from hpn.engine.notice import AREAS
+from hpn.words.designations import OTHERS
 from hpn.words.quantities import INPUTS
 from hpn.words.reader import Reader
 from hpn.words.terms import BEARING_MODELS, FOR_OTHERS, LIFE_BASES, MECHANISMS, POSITION_ERROR_AT, RANKINGS

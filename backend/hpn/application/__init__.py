@@ -24,14 +24,12 @@ from hpn.application.requirements import (
     OutputLoad,
     Requirements,
 )
-from hpn.application.shaft_centre import OTHERS
 
 __all__ = [
     "BEARING_LIFE_H",
     "LEAST_MOTION",
     "LISTED_FIGURES",
     "MOST_WISHES",
-    "OTHERS",
     "STOP_LOADS",
     "WORKED_EXAMPLE",
     "Application",

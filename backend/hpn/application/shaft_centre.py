@@ -7,23 +7,14 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, TypeAdapter, WrapValidator
 from pydantic_core import InitErrorDetails, PydanticCustomError, PydanticKnownError, ValidationError
 
-from hpn.words.designations import canonical_size
+from hpn.words.designations import OTHERS, canonical_place
 from hpn.words.fields import Positive
 from hpn.words.wording import N_
-
-OTHERS = "others"
-"""Name beside the sizes, for all that have no distance of their own."""
 
 MOST_SIZES = 100
 
 NO_CENTRE = N_('must be a number, such as 21, or an object by size, such as {"20A": 21, "others": 18}')
 TWICE = N_("is given twice: {size}")
-
-
-def canonical_place(name: Any) -> Any:
-    """Size in the handbook's spelling, or `others`, upper case and blanks aside; anything else comes back as it is."""
-    is_others = isinstance(name, str) and name.strip().casefold() == OTHERS
-    return OTHERS if is_others else canonical_size(name)
 
 
 _Number = TypeAdapter[float](Positive)

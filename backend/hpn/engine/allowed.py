@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-from hpn.application import LISTED_FIGURES, OTHERS, Application, InputError, Location, OutputLoad
+from hpn.application import LISTED_FIGURES, Application, InputError, Location, OutputLoad
 from hpn.application.shaft_centre import by_size
 from hpn.catalogue import Catalogue, GearList
+from hpn.words.designations import OTHERS
 from hpn.words.likeness import likeness
 from hpn.words.wording import N_, Sentence, Value
 

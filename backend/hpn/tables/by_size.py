@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from functools import cache
 from typing import NamedTuple
 
-from hpn.application.shaft_centre import OTHERS, canonical_place
+from hpn.words.designations import OTHERS, canonical_place
 from hpn.words.reader import LANGUAGES, Reader
 from hpn.words.terms import FOR_OTHERS
 

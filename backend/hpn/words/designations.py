@@ -13,6 +13,16 @@ def canonical_size(text: Any) -> Any:
     return f"{int(match[1])}A" if match else text
 
 
+OTHERS = "others"
+"""Name beside sizes, for all that have no figure of their own."""
+
+
+def canonical_place(name: Any) -> Any:
+    """Size in the handbook's spelling, or `others`, upper case and blanks aside; anything else comes back as it is."""
+    is_others = isinstance(name, str) and name.strip().casefold() == OTHERS
+    return OTHERS if is_others else canonical_size(name)
+
+
 def canonical_designation(text: str) -> str | None:
     """Designation `HPN-20A-5` from any of the printed spellings, or None.
 

@@ -12,7 +12,7 @@ from typing import Any
 from msgspec.structs import replace as with_values
 from pydantic import ValidationError
 
-from hpn.application import OTHERS, Application
+from hpn.application import Application
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
 from hpn.tables.by_size import BySize, Part, by_size
@@ -38,6 +38,7 @@ from hpn.web.form.symbols import (
     units_of,
 )
 from hpn.web.form.ways import CYCLE_NAMES, Pairs, switched, taken_over
+from hpn.words.designations import OTHERS
 from hpn.words.reader import Reader
 from hpn.words.terms import FOR_OTHERS
 from hpn.words.titles import LONGEST_NAME, faults_of

@@ -8,7 +8,6 @@ from urllib.parse import quote
 from pydantic import BaseModel
 
 from hpn.application import (
-    OTHERS,
     Application,
     Brake,
     Drive,
@@ -21,6 +20,7 @@ from hpn.application import (
 from hpn.application.motion import Motion
 from hpn.tables.by_size import BySize, Part
 from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
+from hpn.words.designations import OTHERS
 
 _EMPTY_LOAD = OutputLoad()
 
