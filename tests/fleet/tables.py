@@ -104,7 +104,7 @@ FAULTS: dict[str, Callable[[Row], None]] = {
     f"{CENTRE}: size 20A: must be greater than 0": lambda row: row.update(
         {CENTRE: {"20A": 0.0}, "output_load.radial_N": 1.0}
     ),
-    f"{CENTRE}: size 12A: the catalogue has no 12A; it looks like 11A": lambda row: row.update(
+    f"{CENTRE}: size 12A: the catalogue has no 12A (available: ": lambda row: row.update(
         {CENTRE: {"12A": 9.0, "others": 8.0}, "output_load.radial_N": 1.0}
     ),
     "requirements.ratios: item 1: the catalogue has no 6": lambda row: row.update({"requirements.ratios": [6]}),

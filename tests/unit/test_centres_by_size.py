@@ -83,7 +83,7 @@ def test_a_wrong_centre_is_refused_where_it_stands(given: Any, place: tuple[str,
 @pytest.mark.parametrize(
     ("size", "said"),
     [
-        ("20B", f"the catalogue has no 20B; it looks like 20A (available: {SIZES}, others)"),
+        ("20B", f"the catalogue has no 20B (available: {SIZES}, others)"),
         ("other", f"the catalogue has no other; it looks like others (available: {SIZES}, others)"),
         ("99A", f"the catalogue has no 99A (available: {SIZES}, others)"),
         ("?", f"the catalogue has no ? (available: {SIZES}, others)"),

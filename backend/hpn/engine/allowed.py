@@ -58,7 +58,8 @@ def _require_sizes_of_centres(load: OutputLoad, catalogue: Catalogue) -> None:
 
 
 def _none_such(size: str, there: Sequence[str]) -> Sentence:
-    near, values = likeness(size, there), {"value": size[:SHOWN], "listed": ", ".join(there)}
+    near = likeness(size, (OTHERS,))  # of sizes, which differ by a digit, each would be as likely
+    values = {"value": size[:SHOWN], "listed": ", ".join(there)}
     return Sentence(LOOKS_LIKE, {**values, "near": near}) if near else Sentence(NOT_THERE, values)
 
 
