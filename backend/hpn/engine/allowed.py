@@ -8,7 +8,8 @@ from hpn.application.shaft_centre import by_size
 from hpn.catalogue import Catalogue, GearList
 from hpn.words.designations import OTHERS
 from hpn.words.likeness import likeness
-from hpn.words.wording import N_, Sentence, Value
+from hpn.words.terms import FOR_OTHERS
+from hpn.words.wording import N_, Sentence, Value, listed
 
 NOT_THERE = N_("the catalogue has no {value} (available: {listed})")
 LOOKS_LIKE = N_("the catalogue has no {value}; it looks like {near} (available: {listed})")
@@ -49,7 +50,7 @@ def gears_allowed(
 
 def _require_sizes_of_centres(load: OutputLoad, catalogue: Catalogue) -> None:
     """Raise InputError for a shaft's centre of a size that the catalogue lacks."""
-    there = (*catalogue.sizes, OTHERS)
+    there = catalogue.sizes
     strange = [size for size in by_size(load.shaft_centre_mm) if size not in there]
     if strange:
         raise InputError(
@@ -59,8 +60,9 @@ def _require_sizes_of_centres(load: OutputLoad, catalogue: Catalogue) -> None:
 
 def _none_such(size: str, there: Sequence[str]) -> Sentence:
     near = likeness(size, (OTHERS,))  # of sizes, which differ by a digit, each would be as likely
-    values = {"value": size[:SHOWN], "listed": ", ".join(there)}
-    return Sentence(LOOKS_LIKE, {**values, "near": near}) if near else Sentence(NOT_THERE, values)
+    sizes = [*(Sentence("{text}", {"text": each}) for each in there), Sentence(FOR_OTHERS)]
+    values: dict[str, Value] = {"value": size[:SHOWN], "listed": listed(sizes)}
+    return Sentence(LOOKS_LIKE, {**values, "near": near}, ("near",)) if near else Sentence(NOT_THERE, values)
 
 
 @lru_cache(maxsize=256)

@@ -155,7 +155,7 @@ SYMBOLS = (
         "by_size",
         hint=N_(
             "From the shoulder, at least: not published, so take it from the manufacturer’s drawing. One for all "
-            "sizes, or by size: 20A: 21; others: 18"
+            "sizes, or by size: 20A:\u00a021; others:\u00a018"
         ),
     ),
     Symbol(
