@@ -49,6 +49,19 @@ def test_a_list_is_replaced_whole() -> None:
     assert found.whole["requirements"] == {"ratios": [10]}
 
 
+def test_centres_by_size_are_one_value_that_an_axis_inherits_or_replaces() -> None:
+    common = Common.model_validate({"output_load": {"shaft_centre_mm": {"others": 18, "20": 21}}}).sent
+    own, inherited = (
+        resolve(worked_example(output_load={"radial_N": 400.0, "radial_position_mm": 45.0} | load), common)
+        for load in ({"shaft_centre_mm": {"32A": 30.0}}, {})
+    )
+
+    assert own.application and own.application.output_load
+    assert own.application.output_load.shaft_centre_mm == {"32A": 30.0}
+    assert inherited.application and inherited.application.output_load
+    assert inherited.application.output_load.shaft_centre_mm == {"20A": 21.0, "others": 18.0}
+
+
 def test_what_a_common_value_needs_is_not_asked_where_the_axis_lacks_it() -> None:
     common = {"requirements": {"natural_frequency_Hz": 20.0}, "rank_by": "natural_frequency"}
 

@@ -44,7 +44,15 @@ EXCLUSIVE = (("requirements.position_error_arcmin", "requirements.position_error
 def _inheritable(model: type[Model], part: str) -> Mapping[str, Any]:
     """Fields of a part of an application that may be common, each null by default, which is inherited."""
     return {
-        name: (_kind(field) | None, Field(None, description=field.description, examples=field.examples))
+        name: (
+            _kind(field) | None,
+            Field(
+                None,
+                description=field.description,
+                examples=field.examples,
+                json_schema_extra=field.json_schema_extra,
+            ),
+        )
         for name, field in model.model_fields.items()
         if f"{part}.{name}" in COMMON
     }
