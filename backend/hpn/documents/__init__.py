@@ -7,6 +7,7 @@
 - `answers`: `answers(axes, catalogue)`, the `AxisAnswer` of many axes in one evaluation
 - `revision`: labels of revisions, and `Frozen`, everything of a document as it was, in packed bytes
 - `gears`: the list of gears to order, with quantities and masses
+- `kinds`: `kinds_of(axes, catalogue)`, what fewer kinds of gears weigh and which axes change
 
 Nothing here knows the store or the web.
 """

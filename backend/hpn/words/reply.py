@@ -39,7 +39,7 @@ class Reply(Struct, frozen=True):
         """Schema of an object: fields that are always sent, and those that may be left out."""
         kinds, sparse = get_type_hints(cls, include_extras=True), cls.__struct_config__.omit_defaults
         fields = {
-            field.name: core_schema.typed_dict_field(
+            field.encode_name: core_schema.typed_dict_field(
                 handler.generate_schema(_sent(kinds[field.name])),
                 required=field.required or not (sparse or field.default is UNSET),
             )
