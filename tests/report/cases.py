@@ -100,7 +100,7 @@ class Export:
 
     def is_lower_bound(self, candidate: Json) -> bool:
         """True where the motor torques of a candidate are loss-free in some phase."""
-        return self.typed().is_lower_bound(candidate_of(candidate))
+        return self.typed().account.of(candidate_of(candidate)).is_lower_bound
 
     def typed(self) -> export.Export:
         """The same, typed."""

@@ -59,7 +59,7 @@ def test_a_bracket_behind_a_symbol_is_no_part_of_its_index() -> None:
 
 def test_its_figures_are_in_the_units_of_the_reader(catalogue: Catalogue) -> None:
     shown = content(typed_export_of(MOVING["rotary table"], catalogue), US)
-    texts = {line["label"]: line["text"] for line in shown["motion"]["mechanism"]}
+    texts = {"".join(line["label"]): line["text"] for line in shown["motion"]["mechanism"]}
     assert texts["Reibmoment"].startswith("13,2761")
     assert shown["motion"]["moves"]["header"][-1][1] == "lb·in"
     assert shown["phases"]["header"][2][1].startswith("lb")
@@ -77,7 +77,7 @@ def test_a_listed_motor_stands_with_its_figures(supplemented: Supplement) -> Non
     supplied = supplemented(motors=MOTORS)
     asked = MOVING["rotary table"] | {"requirements": {"motor": {"designation": "M 8"}}}
     export = typed_export_of(asked, supplied)
-    wishes = {line["label"]: line["text"] for line in content(export, ENGLISH)["requirements"]}
+    wishes = {"".join(line["label"]): line["text"] for line in content(export, ENGLISH)["requirements"]}
     assert wishes["Motor of your list"] == "M 8"
     assert wishes["Inertia of the motor"].startswith("0.0005")
     assert pdf(replace(export, catalogue=None), ENGLISH)

@@ -11,12 +11,11 @@ import openpyxl
 import pytest
 from openpyxl.workbook import Workbook
 
-from hpn.account.inputs import LOADS, REQUIREMENTS, value_of
+from hpn.account.inputs import LOADS, REQUIREMENTS
 from hpn.account.readings import figure_symbol
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import FIGURES
 from hpn.files.export import LOWER_BOUND, Export
-from hpn.files.report.checks import readings
 from hpn.files.workbook.workbook import workbook
 from hpn.words.quantities import CANDIDATE, INPUTS
 from hpn.words.reader import Reader
@@ -84,13 +83,13 @@ def test_every_candidate_has_the_numbers_of_the_reply_with_all_their_digits(case
 @pytest.mark.parametrize("case", SMALL)
 def test_the_first_sheet_reads_as_the_page_does(case: str, catalogue: Catalogue) -> None:
     export = typed_export_of(SMALL[case], catalogue)
-    book, read = opened(export), readings(export)
+    book = opened(export)
     first = [row[0] for row in rows(book, "Selection")].index("Check") + 1
 
-    for row, check in zip(rows(book, "Selection")[first:], export.candidate.checks, strict=False):
+    for row, line_of in zip(rows(book, "Selection")[first:], export.account.checks, strict=False):
+        check, reading = line_of.result, line_of.reading
         title, relation, demand, limit, unit, used, verdict, *_ = row
         assert title == export.selection.check_definitions[check.code].title
-        reading = read[check.code]
         assert (relation or "", unit or "") == (reading.relation, ENGLISH.unit(reading.unit)), check.code
         assert demand == ("unlimited" if reading.has_unlimited_demand else reading.demand), check.code
         assert limit == ("unlimited" if reading.has_unlimited_limit else reading.limit), check.code
@@ -105,12 +104,12 @@ def test_inputs_are_those_of_the_application(case: str, catalogue: Catalogue) ->
     book = opened(export)
 
     shown = {row[0]: row[2] for row in rows(book, "Inputs") if row[0]}
+    said = {line.code: line.value for line in (*export.account.loads, *export.account.requirements)}
     for path in (*LOADS, *REQUIREMENTS):
-        value = value_of(export.equipped, path)
-        if value is None:
+        if path not in said:
             assert INPUTS[path].name not in shown, path
-        elif isinstance(value, float):
-            assert shown[INPUTS[path].name] == value, path
+        elif isinstance(said[path], float):
+            assert shown[INPUTS[path].name] == said[path], path
     phases = export.application.duty_cycle.load_phases
     place = [row[0] for row in rows(book, "Inputs")].index("Duty cycle") + 2
     table = rows(book, "Inputs")[place : place + len(phases)]
@@ -250,7 +249,7 @@ def test_a_motor_torque_is_a_lower_bound_without_an_efficiency_and_none_beyond_a
     asked = cycle(phase(0, 100), phase(-torque, 9), requirements={"efficiency": efficiency})
     export = typed_export_of(asked, supplemented(efficiency=curve))
     gears = {gear.designation: gear for gear in export.selection.candidates}
-    assert {name: export.is_lower_bound(gears[name]) for name in ("HPN-20A-5", "HPN-20A-4")} == {
+    assert {name: export.account.of(gears[name]).is_lower_bound for name in ("HPN-20A-5", "HPN-20A-4")} == {
         "HPN-20A-5": bound,
         "HPN-20A-4": efficiency is None,
     }

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.explain.differences import TOLERANCE, differences
+from hpn.explain.comparison import TOLERANCE
+from hpn.explain.differences import differences
 from tests.build import Json, answer, worked_example
 
 

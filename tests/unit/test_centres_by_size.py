@@ -6,7 +6,7 @@ from urllib.parse import parse_qsl
 import pytest
 from pydantic import ValidationError
 
-from hpn.account.inputs import LOADS, given
+from hpn.account.inputs import LOADS, lines_of
 from hpn.application import Application, InputError, OutputLoad
 from hpn.application.faults import faults_of
 from hpn.application.input_fields import FIELDS
@@ -234,5 +234,6 @@ def test_a_centre_of_a_link_is_shown_in_the_units_of_the_reader_and_taken_back_t
 def test_the_report_lists_each_size_with_its_unit() -> None:
     application = Application.model_validate(off_centre({"20A": 21, "others": 18}))
     for marker, text in (("", "20A: 21\u202fmm; others: 18\u202fmm"), ("de", "20A: 21\u202fmm; übrige: 18\u202fmm")):
-        lines = {line.symbol: line.text for line in given(application, LOADS, Reader.of_marker(marker))}
+        reader = Reader.of_marker(marker)
+        lines = {line.named.symbol: line.text(reader) for line in lines_of(application, LOADS)}
         assert lines["x_c"] == text

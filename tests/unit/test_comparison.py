@@ -4,11 +4,12 @@ import math
 
 import pytest
 
+from hpn.account.account import Account
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import Selection, select
-from hpn.explain.comparison import Column, Row, groups_of, undominated
+from hpn.explain.comparison import Row, groups_of, undominated
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 
@@ -23,18 +24,24 @@ def candidate(selection: Selection, designation: str) -> Candidate:
     return found
 
 
-def columns(selection: Selection, catalogue: Catalogue, *designations: str) -> list[Column]:
-    return [Column(candidate(selection, name), catalogue.by_designation[name]) for name in designations]
+def compared(application: Json, catalogue: Catalogue, *designations: str) -> dict[str, Row]:
+    """Figures of some gears side by side, by their places."""
+    selection = selected(application, catalogue)
+    asked = Application.model_validate(application)
+    accounts = [Account(selection, candidate(selection, name), asked, catalogue) for name in designations]
+    rows = [row for group in groups_of(accounts) for row in group.rows]
+    return {row.head.code: row for row in rows if isinstance(row, Row)}
 
 
-def rows(compared: list[Column], maximum_torque_Nm: float) -> dict[str, Row]:
-    return {row.code: row for group in groups_of(compared, maximum_torque_Nm, {}) for row in group.rows}
+def values(row: Row) -> list[object]:
+    """Values of a row."""
+    return [line and line.value for line in row.lines]
 
 
 def test_wind_up_is_that_of_the_drive_and_the_report(catalogue: Catalogue) -> None:
     """T_max over K3 in minutes of arc: 40 Nm over 26000 Nm/rad and over 143000 Nm/rad (table 15.2)."""
-    compared = columns(selected(worked_example(), catalogue), catalogue, "HPN-20A-5", "HPN-40A-5")
-    smaller, larger = rows(compared, 40.0)["wind_up"].values
+    rows = compared(worked_example(), catalogue, "HPN-20A-5", "HPN-40A-5")
+    smaller, larger = values(rows["candidate.wind_up_arcmin"])
     assert smaller == pytest.approx(40 / 26000 * 180 / math.pi * 60, rel=1e-12)
     assert larger == pytest.approx(40 / 143000 * 180 / math.pi * 60, rel=1e-12)
 
@@ -42,22 +49,38 @@ def test_wind_up_is_that_of_the_drive_and_the_report(catalogue: Catalogue) -> No
 def test_the_best_gear_of_each_row_is_the_one_with_the_smaller_or_the_larger_figure(catalogue: Catalogue) -> None:
     """HPN-14A-5 is smaller and has one stage, HPN-32A-50 is larger and has two: size or stage makes one better."""
     loaded = worked_example(output_load={"radial_N": 100.0}, requirements={"load_inertia_kgm2": 0.2, "efficiency": 0.9})
-    compared = columns(selected(loaded, catalogue), catalogue, "HPN-14A-5", "HPN-32A-50")
-    best = {code: row.best for code, row in rows(compared, 40.0).items() if row.best}
-    assert {code for code in best if best[code] == {0}} == {"backlash", "accuracy", "weight", "length", "longest"}
+    best = {code: row.best for code, row in compared(loaded, catalogue, "HPN-14A-5", "HPN-32A-50").items() if row.best}
+    lighter = {"backlash_arcmin", "transmission_accuracy_arcmin", "weight_kg", "length_min_mm", "length_max_mm"}
+    assert {code for code in best if best[code] == {0}} == {f"gear.{name}" for name in lighter}
+    figures = {
+        *("life_L10_h", "momentary_peak_count", "bearing_life_L50_h", "bearing_life_L10_h", "shortest_life_h"),
+        *("motor_peak_torque_Nm", "motor_rated_torque_Nm"),
+        *("wind_up_arcmin", "natural_frequency_Hz", "position_error_arcmin"),
+    }
+    rated = {"rated_torque_Nm", "repeated_peak_torque_Nm", "momentary_peak_torque_Nm", "torsional_stiffness_Nm_per_rad"}
     assert {code for code in best if best[code] == {1}} == {
-        *("life", "stops", "bearing_life", "motor_torque", "wind_up", "stiffness", "frequency", "position_error"),
-        *("rated_torque_Nm", "repeated_peak_torque_Nm", "momentary_peak_torque_Nm"),
+        *(f"candidate.{name}" for name in figures),
+        *(f"gear.{name}" for name in rated),
     }
 
 
-def test_motor_torque_without_an_efficiency_is_said_to_be_a_lower_bound(catalogue: Catalogue) -> None:
-    def title(**requirements: float) -> str:
-        selection = selected(worked_example(requirements=requirements), catalogue)
-        return rows(columns(selection, catalogue, "HPN-20A-5", "HPN-14A-5"), 40.0)["motor_torque"].title
+def test_each_check_and_each_published_figure_stands_in_the_comparison_once(catalogue: Catalogue) -> None:
+    selection, asked = selected(worked_example(), catalogue), Application.model_validate(worked_example())
+    accounts = [Account(selection, candidate(selection, f"HPN-{size}-5"), asked, catalogue) for size in ("14A", "20A")]
+    codes = [row.head.code for group in groups_of(accounts) for row in group.rows]
+    published = [line.code for line in accounts[0].published if line.value is not None]
 
-    assert title() == "Peak torque at the motor, a lower bound where η is 1"
-    assert title(efficiency=0.9) == "Peak torque at the motor"
+    assert len(codes) == len(set(codes))
+    assert {*selection.check_definitions, *published} <= set(codes)
+
+
+def test_motor_torque_without_an_efficiency_is_said_to_be_a_lower_bound(catalogue: Catalogue) -> None:
+    def is_lower_bound(**requirements: float) -> bool:
+        rows = compared(worked_example(requirements=requirements), catalogue, "HPN-20A-5", "HPN-14A-5")
+        return rows["candidate.motor_peak_torque_Nm"].is_lower_bound
+
+    assert is_lower_bound()
+    assert not is_lower_bound(efficiency=0.9)
 
 
 def test_best_compromises_are_those_that_no_other_suitable_gear_outdoes(catalogue: Catalogue) -> None:
@@ -93,9 +116,10 @@ def test_an_unrated_gear_is_not_unlimited_though_it_fails_a_property_check(catal
     assert gear.status == "unsuitable"
     assert not gear.is_unlimited("life_L10_h")
     assert not gear.is_unlimited("momentary_peak_count")
-    values = rows(columns(selection, catalogue, "HPN-40A-5", "HPN-20A-5"), 100.0)
-    assert values["life"].values[0] is None
-    assert values["stops"].values[0] is None and values["stops"].best == frozenset()
+    rows = compared(asked, catalogue, "HPN-40A-5", "HPN-20A-5")
+    assert values(rows["candidate.life_L10_h"])[0] is None
+    stops = rows["candidate.momentary_peak_count"]
+    assert values(stops)[0] is None and stops.best == frozenset()
 
 
 def test_each_figure_is_unlimited_by_its_own_rating(supplemented: Supplement) -> None:
@@ -118,11 +142,10 @@ def test_without_a_torque_the_life_is_unlimited_and_without_a_stop_there_is_no_c
 def test_a_bearing_without_points_of_its_curve_has_no_life_to_compare(supplemented: Supplement) -> None:
     points = "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,p\n20A,1,1500,900,p\n20A,1,0,1800,p\n"
     filled = supplemented(bearing_envelopes=points)
-    selection = selected(cycle(phase(10, 100), output_load={"radial_N": 500, "model": "digitised"}), filled)
+    asked = cycle(phase(10, 100), output_load={"radial_N": 500, "model": "digitised"})
+    life = compared(asked, filled, "HPN-20A-5", "HPN-14A-5")["candidate.bearing_life_L50_h"]
 
-    life = rows(columns(selection, filled, "HPN-20A-5", "HPN-14A-5"), 10.0)["bearing_life"]
-
-    assert life.values == (candidate(selection, "HPN-20A-5").bearing_life_L50_h, None)
+    assert values(life) == [candidate(selected(asked, filled), "HPN-20A-5").bearing_life_L50_h, None]
     assert life.best == frozenset()
 
 

@@ -12,7 +12,7 @@ from hpn.explain.calculation import calculation_of
 from hpn.explain.calculation.formula import value_of
 from hpn.explain.differences import differences
 from hpn.files.export import Export
-from hpn.files.report.tables import of_gear
+from hpn.files.report.tables import derived
 from hpn.words.reader import GROUP, Reader
 from tests.build import Json, answer, candidate, cycle, notices, phase, worked_example
 from tests.conftest import Supplement
@@ -164,7 +164,7 @@ def test_a_report_calls_the_torques_at_the_motor_alone_a_lower_bound(catalogue: 
     asked = example(load_inertia_kgm2=0.8, motor={"inertia_kgm2": 0.0015}) | {"emergency_stop": stop}
     export = Export(Application.model_validate(asked), chosen(asked, catalogue), "/", catalogue=catalogue)
 
-    labels = [str(line["label"]) for line in of_gear(export, Reader())]
+    labels = [str(line["label"]) for line in derived(export.account, Reader())]
     assert any("Torque limit of the drive" in label for label in labels)
     assert any("Speed with a locked motor" in label for label in labels)
     bounds = [label for label in labels if "lower bound" in label]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from babel.messages.catalog import Catalog
 
-from hpn.account.inputs import WORDS
+from hpn.account.lines import WORDS
 from hpn.application import Application
 from hpn.catalogue import Catalogue as Gears
 from hpn.engine.selection import select

@@ -62,7 +62,7 @@ def test_ties_differ_in_nothing_that_ranks_them_but_life(catalogue: Catalogue) -
 )
 def test_the_shortest_life_is_the_gears_or_its_bearings(catalogue: Catalogue, query: str, check: str) -> None:
     answer = answer_to(query, catalogue)
-    life, chosen = answer.shortest_life, answer.chosen
+    life, chosen = answer.account.shortest_life, answer.chosen
 
     assert life and life.check == check
     lives = [value for value in (chosen.life_L10_h, chosen.bearing_life_L10_h) if value is not None]
@@ -77,6 +77,6 @@ def test_a_life_that_nothing_limits_is_no_shortest_one_beside_another(catalogue:
     held = answer_to("T=0&n=10&t=1&size=20A&FR=500", catalogue)
     unrated = answer_to("T=10&n=10&t=1&size=40A", catalogue)
 
-    assert free.shortest_life and free.shortest_life.life_h is None
-    assert held.shortest_life and held.shortest_life.check == "output_bearing_life"
-    assert unrated.shortest_life is None
+    assert free.account.shortest_life and free.account.shortest_life.life_h is None
+    assert held.account.shortest_life and held.account.shortest_life.check == "output_bearing_life"
+    assert unrated.account.shortest_life is None

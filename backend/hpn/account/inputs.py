@@ -1,22 +1,19 @@
-"""Every input of an application as a reader finds it: name, symbol, value, unit."""
+"""What was asked: loads and requirements line by line, mechanism, moves and phases."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from hpn.application import Application
-from hpn.engine.notice import AREAS
-from hpn.words.designations import OTHERS
+from hpn.account.lines import Column, Kind, Line, Table, Value
+from hpn.application import Application, DutyCycle
+from hpn.application.motion import Motion
+from hpn.words.motion import MOTION
 from hpn.words.quantities import INPUTS
-from hpn.words.reader import Reader
-from hpn.words.terms import BEARING_MODELS, FOR_OTHERS, LIFE_BASES, MECHANISMS, POSITION_ERROR_AT, RANKINGS
+from hpn.words.titles import row_label
 from hpn.words.units import suffix_of
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Named
 
-Value = float | str | bool | tuple[str | int, ...] | dict[str, float]
-
-LOAD_PATH, LOAD_INERTIA = "output_load.", "requirements.load_inertia_kgm2"
-_LOADING = ("duty_cycle.", "emergency_stop.", LOAD_PATH)
+_LOADING = ("duty_cycle.", "emergency_stop.", "output_load.")
 
 LOADS = tuple(path for path in INPUTS if path.startswith(_LOADING))
 """Loads of the gear besides the phases, by their paths in the application."""
@@ -40,62 +37,96 @@ OF_SHAFT: Mapping[str, tuple[str, ...]] = {
 }
 """Inputs of a pinion or pulley on the shaft, and with which of both they count."""
 
-WORDS: Mapping[str, str] = {
-    **BEARING_MODELS,
-    **LIFE_BASES,
-    **POSITION_ERROR_AT,
-    **MECHANISMS,
-    **{code: ranking.choice for code, ranking in RANKINGS.items()},
-    "True": N_("yes"),
-    "False": N_("no"),
-    **{str(area): text for area, text in AREAS.items()},
-}
-"""Values that are a code, in words."""
+
+def lines_of(application: Application, paths: Iterable[str]) -> list[Line]:
+    """Inputs at paths of INPUTS that are given or have a default; of the load, also the defaults of a phase's load."""
+    found = ((path, _value(application, path)) for path in paths)
+    return [_line(path, INPUTS[path], value) for path, value in found if value is not None]
 
 
-@dataclass(frozen=True, slots=True)
-class InputLine:
-    """One input that is given, ready to read."""
-
-    label: str
-    symbol: str
-    text: str
-
-
-def value_of(application: Application, path: str) -> Value | None:
-    """Value of an application at a path of INPUTS, or None where nothing is said.
-
-    Of the load, also the defaults that a phase's load has.
-    """
+def _value(application: Application, path: str) -> Any:
     if path in OF_SHAFT and application.shaft_drive not in OF_SHAFT[path]:
         return None
     first, *rest = path.split(".")
     part: Any = application.loads if first == "output_load" else getattr(application, first)
     for step in rest:
         part = getattr(part, step, None)
-    value: Value | None = part
-    return None if value == UNSAID.get(path) else value
+    return None if part == UNSAID.get(path) else part
 
 
-def given(application: Application, paths: Iterable[str], reader: Reader) -> Iterable[InputLine]:
-    """Those inputs that are given or have a default."""
-    for path in paths:
-        value = value_of(application, path)
-        if value is not None:
-            yield InputLine(reader.text(INPUTS[path].name), INPUTS[path].symbol, written(value, path, reader))
-
-
-def written(value: Value, path: str, reader: Reader) -> str:
-    """A value of an input in words or with its unit."""
+def _line(code: str, named: Named, value: Any = None, kind: Kind = "entered") -> Line:
     if isinstance(value, tuple):
-        return ", ".join(map(str, value))
-    if isinstance(value, str | bool):
-        return reader.text(WORDS.get(str(value), str(value)))
-    unit = suffix_of(path)
-    if isinstance(value, dict):
-        return "; ".join(f"{_size(size, reader)}: {written(x, path, reader)}" for size, x in value.items())
-    return reader.with_unit(reader.exact(value, unit), unit)
+        return Line(code, named, ", ".join(map(str, value)))
+    return Line(code, named, str(value) if isinstance(value, bool) else value, suffix_of(code), kind)
 
 
-def _size(size: str, reader: Reader) -> str:
-    return reader.text(FOR_OTHERS) if size == OTHERS else size
+# --- Motion -----------------------------------------------------------------------------------------------------------
+
+_OF_MOVE = {f"motion.{at}": named for at, named in MOTION.items() if at.startswith("move.") and at != "move.name"}
+_LOADS_OF_MOVE = {f"phase.{name}": INPUTS[f"phase.{name}"] for name in ("radial_N", "axial_N")}
+MOVES = _OF_MOVE | _LOADS_OF_MOVE
+"""Names of the fields that a move may have, by their places; its own name stands beside its number."""
+
+PHASES_TITLE, MOTION_TITLE, MOVES_TITLE = N_("Load phases of the motion"), N_("Motion"), N_("Moves")
+PHASE_HEAD, MOVE_HEAD = N_("Phase"), N_("Move")
+
+
+def mechanism_of(motion: Motion) -> list[Line]:
+    """What is said of mechanism and start; what has its default is left out."""
+    lines = []
+    for path, named in MOTION.items():
+        part, _, name = path.rpartition(".")
+        owner: Any = motion.mechanism if part == "mechanism" else motion
+        if part != "move" and _is_said(owner, name):
+            lines.append(_line(f"motion.{path}", named, getattr(owner, name)))
+    return lines
+
+
+def moves_of(motion: Motion) -> Table:
+    """The moves; a field that is at its default is left out, and a column that no move sets."""
+    columns = []
+    for place, named in MOVES.items():
+        name = place.rpartition(".")[2]
+        given = [getattr(move, name) if _is_said(move, name) else None for move in motion.moves]
+        if any(value is not None for value in given):
+            columns.append(Column(_line(place, named), given))
+    names = [move.name for move in motion.moves]
+    named_moves = Column(_line("motion.move.name", MOTION["move.name"]), names)
+    return Table({MOVE_HEAD: [*map(row_label, itertools.count(), names)]}, tuple(columns), named_moves)
+
+
+def _is_said(owner: Any, name: str) -> bool:
+    field = type(owner).model_fields.get(name)
+    return field is not None and getattr(owner, name) not in (None, field.default)
+
+
+# --- Phases -----------------------------------------------------------------------------------------------------------
+
+_ALWAYS = ("torque_Nm", "speed_rpm", "duration_s")
+_WHERE_GIVEN = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "least_torque_Nm", "radial_N", "axial_N")
+
+
+def phases_of(cycle: DutyCycle) -> Table:
+    """The load phases, as they were given or rounded where they come out of a motion; always torque, speed, time."""
+    phases = cycle.load_phases
+    kind: Kind = "entered" if cycle.motion is None else "computed"
+    optional = [name for name in _WHERE_GIVEN if any(getattr(phase, name) is not None for phase in phases)]
+    return Table(
+        _labels(cycle),
+        tuple(
+            Column(
+                _line(f"phase.{name}", INPUTS[f"phase.{name}"], kind=kind), [getattr(phase, name) for phase in phases]
+            )
+            for name in (*_ALWAYS, *optional)
+        ),
+        Column(_line("phase.name", INPUTS["phase.name"]), [phase.name for phase in phases]),
+    )
+
+
+def _labels(cycle: DutyCycle) -> Mapping[str, Sequence[str]]:
+    """Number and name of each phase, and in a motion of the move that it is a part of."""
+    phases, motion = cycle.load_phases, cycle.motion
+    if motion is None:
+        return {PHASE_HEAD: [row_label(place, phase.name) for place, phase in enumerate(phases)]}
+    moves = [row_label(move, motion.moves[move].name) for move in motion.course.move.tolist()]
+    return {PHASE_HEAD: [str(place) for place, _ in enumerate(phases, 1)], MOVE_HEAD: moves}

@@ -1,45 +1,174 @@
-"""Candidates side by side: their figures row by row, the best in each row, and those that no other outdoes."""
+"""The comparer: accounts side by side, line by line, and gears that no other outdoes.
+
+Two selections of which one is today's, or two that were saved, or some gears of one selection are compared alike.
+"""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import astuple, dataclass, replace
+from itertools import zip_longest
+from typing import Any, TypeVar
 
 import numpy as np
+from msgspec import structs
 
+from hpn.account import published
+from hpn.account.account import UNLIMITED, Account, CheckLine
+from hpn.account.lines import Line, Table
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import Selection
 from hpn.physics import equations
-from hpn.words.wording import N_, Quantity, Sentence, listed
+from hpn.words.wording import N_
 
-Kind = Literal["figure", "percent", "words"]
 MOST_PINS = 4
+TOLERANCE = 1e-12
+"""Relative tolerance, in a list to its largest value: other processors differ by less."""
+
+K = TypeVar("K")
+V = TypeVar("V")
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
-    """One gear of the comparison: its entry in the reply, and its catalogue figures."""
+def is_number(value: Any) -> bool:
+    """True for a number, which a bool is not."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
-    candidate: Candidate
-    gear: Gear
+
+def is_same(one: Any, other: Any, room: float = 0.0) -> bool:
+    """True for values that are equal, numbers to rounding: another processor has other last bits."""
+    numbers = is_number(one) and is_number(other)
+    return bool(one == other or (numbers and math.isclose(one, other, rel_tol=TOLERANCE, abs_tol=room)))
+
+
+def aligned(*sides: Mapping[K, V]) -> Iterator[tuple[K, tuple[V | None, ...]]]:
+    """What each side has under every key, in the order of the first side and then of the next; None for nothing."""
+    for key in dict.fromkeys(key for side in sides for key in side):
+        yield key, tuple(side.get(key) for side in sides)
+
+
+# --- Rows -------------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One quantity of all gears compared; `best` are the columns that are ahead, none where all are equal.
+    """One quantity of all accounts, None where one says nothing of it; `best` are the places of those ahead."""
 
-    `unit` is a suffix; figures are in the units of the wire, None is not published or not asked for.
-    """
+    lines: tuple[Line | None, ...]
+    best: frozenset[int] = frozenset()
 
-    code: str
-    title: str
-    symbol: str
-    unit: str
-    kind: Kind
-    values: tuple[float | Sentence | None, ...]
-    best: frozenset[int]
+    @property
+    def head(self) -> Line:
+        """The quantity."""
+        return next(line for line in self.lines if line is not None)
+
+    @property
+    def is_lower_bound(self) -> bool:
+        """True where one of them is a lower bound."""
+        return any(line is not None and line.is_lower_bound for line in self.lines)
+
+    @property
+    def is_known(self) -> bool:
+        """True where one of them has a value."""
+        return any(line is not None and line.value is not None for line in self.lines)
+
+    @property
+    def differs(self) -> bool:
+        """True for different values."""
+        values = [(line.value, line.until) if line else (None, None) for line in self.lines]
+        return not all(map(is_same, values[0], values[-1]))
+
+
+@dataclass(frozen=True, slots=True)
+class CheckRow:
+    """One check of all accounts, None where it was not asked for; `best` likewise."""
+
+    checks: tuple[CheckLine | None, ...]
+    best: frozenset[int] = frozenset()
+
+    @property
+    def head(self) -> CheckLine:
+        """The check."""
+        return next(check for check in self.checks if check is not None)
+
+    @property
+    def differs(self) -> bool:
+        """True for different results; their figures are equal to rounding."""
+        figures = [(*structs.astuple(check.result), *astuple(check.reading)) if check else () for check in self.checks]
+        return len(figures[0]) != len(figures[-1]) or not all(map(is_same, figures[0], figures[-1]))
+
+
+@dataclass(frozen=True, slots=True)
+class NumberedRow:
+    """One row of two tables that differs, such as a phase: its number and what each says; nothing without the row."""
+
+    number: int
+    sides: tuple[list[Line], list[Line]]
+
+
+def rows_of(*sides: Iterable[Line]) -> list[Row]:
+    """Rows of all lines, matched by their codes."""
+    return [Row(lines) for lines in _matched([{line.code: line for line in side} for side in sides])]
+
+
+def checks_of(*accounts: Account) -> list[CheckRow]:
+    """Rows of the checks that one account or another has."""
+    by_code = [{check.code: check for check in account.checks} for account in accounts]
+    return [CheckRow(checks) for checks in _matched(by_code)]
+
+
+def _matched(sides: Sequence[Mapping[str, V]]) -> Iterator[tuple[V | None, ...]]:
+    """What each side has under every code; what the first lacks stands behind what it follows on its own side."""
+    order = list(sides[0])
+    for side in sides[1:]:
+        place, known = 0, set(order)
+        for code in side:
+            if code in known:
+                place = order.index(code) + 1
+            else:
+                order.insert(place, code)
+                place += 1
+    for code in order:
+        yield tuple(side.get(code) for side in sides)
+
+
+def numbered_rows(one: Table | None, other: Table | None) -> Iterator[NumberedRow]:
+    """Rows of two tables that differ, by their numbers."""
+    said = (table.values() if table else iter(()) for table in (one, other))
+    for place, (before, after) in enumerate(zip_longest(*said)):
+        if before != after:
+            a, b = (t.row(place) if t and place < len(t) else [] for t in (one, other))
+            if any(row.differs for row in rows_of(a, b)):
+                yield NumberedRow(place + 1, (a, b))
+
+
+# --- Gears side by side -----------------------------------------------------------------------------------------------
+
+LESS: Mapping[str, bool] = {
+    "candidate.life_L10_h": False,
+    "candidate.momentary_peak_count": False,
+    "candidate.bearing_life_L50_h": False,
+    "candidate.bearing_life_L10_h": False,
+    "candidate.shortest_life_h": False,
+    "candidate.motor_peak_torque_Nm": True,
+    "candidate.motor_rated_torque_Nm": True,
+    "candidate.natural_frequency_Hz": False,
+    "candidate.wind_up_arcmin": True,
+    "candidate.position_error_arcmin": True,
+    "candidate.position_error_mm": True,
+    "gear.rated_torque_Nm": False,
+    "gear.repeated_peak_torque_Nm": False,
+    "gear.momentary_peak_torque_Nm": False,
+    "gear.maximum_input_speed_rpm": False,
+    "gear.average_input_speed_rpm": False,
+    "gear.backlash_arcmin": True,
+    "gear.transmission_accuracy_arcmin": True,
+    "gear.torsional_stiffness_Nm_per_rad": False,
+    "gear.length_min_mm": True,
+    "gear.length_max_mm": True,
+    "gear.weight_kg": True,
+}
+"""Figures of which less is better, or more; of any other no gear is better than another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,149 +176,44 @@ class RowGroup:
     """Rows under one heading."""
 
     title: str
-    rows: tuple[Row, ...]
+    rows: Sequence[Row | CheckRow]
 
 
-# --- Rows -------------------------------------------------------------------------------------------------------------
-
-Read = Callable[[Column], float | Sentence | None]
-
-
-def _figure(name: str) -> Read:
-    return lambda column: getattr(column.gear, name)
-
-
-def _result(name: str) -> Read:
-    """A figure of the reply; infinite where it is empty because nothing limits it."""
-    return lambda column: math.inf if column.candidate.is_unlimited(name) else getattr(column.candidate, name)
-
-
-def groups_of(
-    columns: Sequence[Column], maximum_torque_Nm: float, checks: Mapping[str, str], *, at_rest: bool = False
-) -> tuple[RowGroup, ...]:
-    """The comparison. `checks` are the titles of the checks that the application asks for, by code; `at_rest` says that
-    the position error is that of rest alone.
-    """
-    return (
-        RowGroup(N_("Utilisation"), tuple(_utilisations(columns, checks))),
-        RowGroup(N_("Life and drive"), tuple(_results(columns, maximum_torque_Nm))),
-        RowGroup(N_("Stiffness and accuracy"), tuple(_accuracies(columns, at_rest=at_rest))),
-        RowGroup(N_("Ratings"), tuple(_ratings(columns))),
-        RowGroup(N_("Size and mounting"), tuple(_mounting(columns))),
-    )
+def groups_of(accounts: Sequence[Account]) -> list[RowGroup]:
+    """Gears of one selection side by side: utilisations, figures under the cycle, and published figures."""
+    figures = rows_of(*([line for line in one.figures if line.kind == "computed"] for one in accounts))
+    printed = rows_of(*([*account.published, *published.bolts(account.gear)] for account in accounts))
+    return [
+        RowGroup(N_("Utilisation"), [_check_ahead(row) for row in checks_of(*accounts)]),
+        RowGroup(N_("Figures of the gear under the cycle"), _ahead(figures)),
+        *(
+            RowGroup(title, known)
+            for title, rows in published.grouped(printed, lambda row: row.head.code)
+            if (known := _ahead(rows))
+        ),
+    ]
 
 
-def _utilisations(columns: Sequence[Column], checks: Mapping[str, str]) -> Iterable[Row]:
-    def read(code: str) -> Read:
-        return lambda column: check.utilisation if (check := column.candidate.check(code)) else None
-
-    for code, title in checks.items():
-        yield _row(columns, code, title, read(code), lowest=True, kind="percent")
+def _ahead(rows: Iterable[Row]) -> list[Row]:
+    return [replace(row, best=_best_of(row)) for row in rows if row.is_known]
 
 
-def _results(columns: Sequence[Column], maximum_torque_Nm: float) -> Iterable[Row]:
-    yield _row(columns, "life", N_("Life"), _result("life_L10_h"), "L_10", "h", lowest=False)
-    if any(column.candidate.momentary_peak_count is not None for column in columns):
-        stops = _result("momentary_peak_count")
-        yield _row(columns, "stops", N_("Permitted stops"), stops, "N_k,max", lowest=False)
-    if any(column.candidate.bearing_life_L50_h is not None for column in columns):
-        bearing_life = _result("bearing_life_L50_h")
-        yield _row(columns, "bearing_life", N_("Bearing life"), bearing_life, "L_b,50", "h", lowest=False)
-    peak, average = _result("motor_peak_torque_Nm"), _result("average_input_speed_rpm")
-    yield _row(columns, "motor_torque", _motor_title(columns, maximum_torque_Nm), peak, "", "Nm", lowest=True)
-    limit = _result("motor_torque_limit_Nm")
-    yield _row(columns, "torque_limit", N_("Torque limit of the drive"), limit, "T_lim", "Nm")
-    yield _row(columns, "input_speed", N_("Average input speed"), average, "n_in,av", "rpm")
-    largest = _result("maximum_input_speed_rpm")
-    yield _row(columns, "largest_input_speed", N_("Maximum input speed"), largest, "n_in,max", "rpm")
+def _best_of(row: Row) -> frozenset[int]:
+    lowest = LESS.get(row.head.code)
+    values = [math.inf if line and line.value == UNLIMITED else line and line.value for line in row.lines]
+    return frozenset() if lowest is None else _best(values, lowest=lowest)
 
 
-def _motor_title(columns: Sequence[Column], maximum_torque_Nm: float) -> str:
-    loss_free = maximum_torque_Nm * (1 + equations.ROUNDING)
-    if any((column.candidate.motor_peak_torque_Nm or 0.0) * column.gear.ratio <= loss_free for column in columns):
-        return N_("Peak torque at the motor, a lower bound where η is 1")
-    return N_("Peak torque at the motor")
+def _check_ahead(row: CheckRow) -> CheckRow:
+    return replace(row, best=_best([check and check.result.utilisation for check in row.checks], lowest=True))
 
 
-def _accuracies(columns: Sequence[Column], *, at_rest: bool) -> Iterable[Row]:
-    backlash, accuracy = _figure("backlash_arcmin"), _figure("transmission_accuracy_arcmin")
-    stiffness = _figure("torsional_stiffness_Nm_per_rad")
-    wind_up = _result("wind_up_arcmin")
-    yield _row(columns, "wind_up", N_("Wind-up at T_max"), wind_up, "φ_w", "arcmin", lowest=True)
-    yield _row(columns, "backlash", N_("Backlash, at most"), backlash, "j", "arcmin", lowest=True)
-    yield _row(columns, "accuracy", N_("Transmission accuracy, at most"), accuracy, "", "arcmin", lowest=True)
-    yield _row(columns, "stiffness", N_("Torsional stiffness"), stiffness, "K_3", "Nm_per_rad", lowest=False)
-    if any(column.candidate.natural_frequency_Hz is not None for column in columns):
-        held = _result("natural_frequency_Hz")
-        yield _row(columns, "frequency", N_("Natural frequency, at most"), held, "f_1", "Hz", lowest=False)
-    error, name = _result("position_error_arcmin"), N_("Position error, about")
-    if at_rest:
-        name = N_("Position error at rest, about")
-    yield _row(columns, "position_error", name, error, "φ_e", "arcmin", lowest=True)
-
-
-def _ratings(columns: Sequence[Column]) -> Iterable[Row]:
-    for name, title, symbol in (
-        ("rated_torque_Nm", N_("Rated torque"), "T_N"),
-        ("repeated_peak_torque_Nm", N_("Repeated peak torque"), "T_R"),
-        ("momentary_peak_torque_Nm", N_("Momentary peak torque"), "T_M"),
-        ("average_input_speed_rpm", N_("Average input speed, limit"), "n_av(max)"),
-        ("maximum_input_speed_rpm", N_("Maximum input speed, limit"), "n_in(max)"),
-    ):
-        yield _row(columns, name, title, _figure(name), symbol, name.rpartition("_")[2], lowest=False)
-
-
-def _mounting(columns: Sequence[Column]) -> Iterable[Row]:
-    weight, length, longest = _figure("weight_kg"), _figure("length_min_mm"), _figure("length_max_mm")
-    yield _row(columns, "weight", N_("Weight"), weight, "m", "kg", lowest=True)
-    yield _row(columns, "length", N_("Length, at least"), length, "L_min", "mm", lowest=True)
-    yield _row(columns, "longest", N_("Length, at most"), longest, "L_max", "mm", lowest=True)
-    yield _row(columns, "housing_bolts", N_("Housing bolts"), _housing_bolts, kind="words")
-    yield _row(columns, "clamp_bolts", N_("Motor coupling bolt"), _clamp_bolts, kind="words")
-
-
-def _row(
-    columns: Sequence[Column],
-    code: str,
-    title: str,
-    read: Read,
-    symbol: str = "",
-    unit: str = "",
-    *,
-    lowest: bool | None = None,
-    kind: Kind = "figure",
-) -> Row:
-    """Row of the values that `read` gives for every column; without `lowest` no column is better than another."""
-    values = tuple(map(read, columns))
-    numbers = np.array([value if isinstance(value, float | int) else np.nan for value in values])
+def _best(values: Sequence[Any], *, lowest: bool) -> frozenset[int]:
+    """Places of the values that are ahead, none where all are equal."""
+    numbers = np.array([value if is_number(value) else np.nan for value in values], dtype=np.float64)
     known = ~np.isnan(numbers)
     places = equations.tied(numbers if lowest else -numbers)
-    is_ahead = (places == 0) & known & (lowest is not None and np.unique(places[known]).size > 1)
-    return Row(code, title, symbol, unit, kind, values, frozenset(np.flatnonzero(is_ahead).tolist()))
-
-
-def _housing_bolts(column: Column) -> Sentence | None:
-    bolts = column.gear.housing_bolts
-    if bolts is None or bolts.bolt_size is None:
-        return None
-    parts = [Sentence("{number} × {bolt}", {"number": bolts.number_of_bolts or "?", "bolt": bolts.bolt_size})]
-    if bolts.pitch_diameter_mm is not None:
-        parts.append(Sentence("Ø\u00a0{diameter}", {"diameter": Quantity(bolts.pitch_diameter_mm, "mm", 4)}))
-    if bolts.tightening_torque_Nm is not None:
-        parts.append(Sentence("{torque}", {"torque": Quantity(bolts.tightening_torque_Nm, "Nm", 4)}))
-    return listed(parts)
-
-
-def _clamp_bolts(column: Column) -> Sentence | None:
-    parts = [
-        Sentence("{bolt}", {"bolt": bolt.bolt_size})
-        if bolt.tightening_torque_Nm is None
-        else Sentence(
-            "{bolt} {torque}", {"bolt": bolt.bolt_size, "torque": Quantity(bolt.tightening_torque_Nm, "Nm", 4)}
-        )
-        for bolt in column.gear.clamp_bolts
-    ]
-    return listed(parts, Sentence(N_("{first} or {rest}")).template) if parts else None
+    return frozenset(np.flatnonzero((places == 0) & known & (np.unique(places[known]).size > 1)).tolist())
 
 
 # --- Not dominated (Pareto) -------------------------------------------------------------------------------------------

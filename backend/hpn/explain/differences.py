@@ -1,6 +1,5 @@
 """Differences between two replies to the same application, field by field, verdicts first."""
 
-import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
@@ -12,6 +11,7 @@ from pydantic import Field
 
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import Selection
+from hpn.explain.comparison import TOLERANCE, aligned, is_number, is_same
 from hpn.words.reply import Reply
 
 NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
@@ -24,9 +24,6 @@ VERDICTS = ("selected", "status", "governing_check", "rank")
 TEXTS = ("reason", "link", "notices", "check_definitions")
 NOT_COMPARED = ("engine_version", "catalogue_version", "values")
 """Fields without a difference of their own: versions, and the values of a notice, which its text shows."""
-
-TOLERANCE = 1e-12
-"""Relative tolerance, in a list to its largest value: other processors differ by less."""
 
 Name = tuple[str, ...]
 Change = Literal["changed", "added", "removed"]
@@ -109,8 +106,8 @@ def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping
     known = {_of_any(name) for name in before.values}
     kinds = {name[:-1] for name in known}
     found = [
-        _difference(name, before.values.get(name), after.values.get(name))
-        for name in before.values | after.values
+        _difference(name, old, new)
+        for name, (old, new) in aligned(before.values, after.values)
         if (one := _of_any(name)) in known or one[:-1] not in kinds
         if _differs(name, before, after, largest)
     ]
@@ -151,17 +148,6 @@ def _differs(name: Name, before: _Fields, after: _Fields, largest: Mapping[Name,
     return alone is None or name == (*alone, BRIEFLY[alone[-2]])
 
 
-def is_number(value: Any) -> bool:
-    """True for a number, which a bool is not."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def is_same(saved: Any, today: Any, room: float = 0.0) -> bool:
-    """True for values that are equal, numbers to rounding: another processor has other last bits."""
-    numbers = is_number(saved) and is_number(today)
-    return bool(saved == today or (numbers and math.isclose(saved, today, rel_tol=TOLERANCE, abs_tol=room)))
-
-
 def _difference(name: Name, old: tuple[str, Any] | None, new: tuple[str, Any] | None) -> Difference:
     pointer, _ = old or new or ("", None)
     return Difference(
@@ -184,7 +170,8 @@ def _weight(difference: Difference) -> int:
 
 # --- Published figures ------------------------------------------------------------------------------------------------
 
-NOT_FIGURES = ("designation", "size", "ratio", "sources", "source")
+DESIGNATION = "designation"
+NOT_FIGURES = (DESIGNATION, "size", "ratio", "sources", "source")
 
 
 class FigureDifference(Reply, frozen=True):
@@ -218,9 +205,10 @@ def figure_differences(
 
 
 def _pairs(before: dict[str, Any], after: dict[str, Any]) -> list[tuple[str, Any, Any]]:
-    """Names and both values of the entries that differ."""
-    names = before | after if before and after else ["designation"]
-    return [(name, before.get(name), after.get(name)) for name in names if before.get(name) != after.get(name)]
+    """Names and both values of the figures that differ; of what only one catalogue has, its designation alone."""
+    both = bool(before and after)
+    pairs = (pair for pair in aligned(before, after) if both or pair[0] == DESIGNATION)
+    return [(name, old, new) for name, (old, new) in pairs if not is_same(old, new)]
 
 
 def _of_gear(catalogue: Catalogue, designation: str) -> dict[str, Any]:

@@ -8,18 +8,13 @@ from functools import cached_property
 from pkgutil import resolve_name
 from typing import Any
 
-import numpy as np
-
+from hpn.account.account import Account
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.allowed import with_listed_motor
 from hpn.engine.candidates import Candidate
-from hpn.engine.checks import BY_CODE
-from hpn.engine.duty import Duty
 from hpn.engine.selection import Selection
 from hpn.explain.comparison import lighter_miss
-from hpn.physics import equations
 from hpn.words.wording import N_
 
 DIGITS = 4
@@ -85,14 +80,9 @@ class Export:
         ]
 
     @cached_property
-    def equipped(self) -> Application:
-        """The application with the figures of the motor that it names, as far as the catalogue is at hand."""
-        return with_listed_motor(self.application, self.figures) if self.figures else self.application
-
-    @cached_property
-    def duty(self) -> Duty:
-        """Duty of the application, as arrays for one."""
-        return Duty.of([self.application])
+    def account(self) -> Account:
+        """What is said of the reported gear."""
+        return Account(self.selection, self.candidate, self.application, self.figures)
 
     @cached_property
     def figures(self) -> Catalogue | None:
@@ -103,40 +93,6 @@ class Export:
     def gear(self, candidate: Candidate) -> Gear | None:
         """Published figures of a candidate as they were, or None."""
         return self.figures.by_designation.get(candidate.designation) if self.figures else None
-
-    def source(self, code: str) -> str:
-        """Where the limit of a check on the reported gear comes from, as exactly as it is known."""
-        gear, check = self.gear(self.candidate), BY_CODE.get(code)
-        figure = check.limited_by if check else None
-        exact = gear.sources.get(figure) if gear and figure else None
-        return exact or self.selection.check_definitions[code].source
-
-    def follows_efficiency_curve(self, candidate: Candidate) -> bool:
-        """True for a candidate whose motor torques are by a curve of a supplement, phase by phase.
-
-        A stated efficiency goes before any curve. Without the catalogue of the selection its figures tell, as far as
-        they can: a curve that says nothing of any phase leaves no trace in them.
-        """
-        if self.application.requirements.efficiency is not None:
-            return False
-        if self.figures is not None:
-            return candidate.designation in self.figures.efficiency
-        if self.selection.turns_motor:
-            return any(notice.code == "efficiency_supplied" for notice in self.selection.notices)
-        shown = np.array([candidate.motor_peak_torque_Nm, candidate.motor_rated_torque_Nm], dtype=np.float64)
-        output = np.array([self.duty.maximum_torque_Nm.item(), self.duty.rms_torque_Nm.item()])
-        loss_free = equations.motor_torque(output_torque_Nm=output, ratio=candidate.ratio, efficiency=1.0)
-        return bool((np.abs(shown - loss_free) > 1e-9 * loss_free).any())
-
-    def is_lower_bound(self, candidate: Candidate) -> bool:
-        """True for a candidate whose motor torques are loss-free: no efficiency is known."""
-        return self.application.requirements.efficiency is None and not self.follows_efficiency_curve(candidate)
-
-    @property
-    def others(self) -> list[Candidate]:
-        """Suitable gears beside the reported one, best first."""
-        reported = self.candidate.designation
-        return [c for c in self.selection.candidates if c.status == "suitable" and c.designation != reported]
 
     @property
     def misses(self) -> list[Candidate]:

@@ -15,17 +15,6 @@ def bound_of(export: Export, code: str | None) -> float:
     return allowed(code, export.application.requirements.utilisation)
 
 
-def equation(number: str | None, reader: Reader) -> str:
-    """Number of an equation of the handbook; blank without one."""
-    return reader.told(Sentence(N_("eq. {number}"), {"number": number})) if number else ""
-
-
-def origin(export: Export, code: str, reader: Reader) -> str:
-    """Equation of a check and where its limit comes from."""
-    parts = equation(export.selection.check_definitions[code].equation, reader), reader.source(export.source(code))
-    return " · ".join(filter(None, parts))
-
-
 def title_of(export: Export, code: str, reader: Reader) -> str:
     """Title of a check as the selection has it."""
     return reader.text(export.selection.check_definitions[code].title)

@@ -334,12 +334,22 @@ GEAR: Mapping[str, Named] = {
     "rated_torque_Nm": Named(N_("Rated torque"), "T_N", "Rated torque T_N."),
     "repeated_peak_torque_Nm": Named(N_("Repeated peak torque"), "T_R", "Repeated peak torque T_R."),
     "momentary_peak_torque_Nm": Named(N_("Momentary peak torque"), "T_M", "Momentary peak torque T_M."),
-    "average_input_speed_rpm": Named(
-        N_("Permissible average input speed"), "n_av(max)", "Permissible average input speed, grease."
-    ),
     "maximum_input_speed_rpm": Named(
         N_("Permissible maximum input speed"), "n_in(max)", "Permissible maximum input speed, grease."
     ),
+    "average_input_speed_rpm": Named(
+        N_("Permissible average input speed"), "n_av(max)", "Permissible average input speed, grease."
+    ),
+    "ambient_temperature_minimum_degC": Named(N_("Lowest ambient temperature"), "t_min", "Lowest ambient temperature."),
+    "ambient_temperature_maximum_degC": Named(
+        N_("Highest ambient temperature"), "t_max", "Highest ambient temperature."
+    ),
+    "backlash_arcmin": Named(N_("Backlash"), "j", "Largest backlash."),
+    "transmission_accuracy_arcmin": Named(N_("Transmission accuracy"), "φ_a", "Largest transmission error."),
+    "torsional_stiffness_Nm_per_rad": Named(N_("Torsional stiffness"), "K_3", "Torsional stiffness K_3."),
+    "length_min_mm": Named(N_("Shortest length"), "L_min", "Shortest length L; it depends on the motor."),
+    "length_max_mm": Named(N_("Longest length"), "L_max", "Longest length L; it depends on the motor."),
+    "weight_kg": Named(N_("Weight"), "m", "Net weight of the standard version."),
     "dynamic_radial_load_N": Named(
         N_("Radial load without axial load"), "F_R,dyn(max)", "Permissible radial load at L50 20000 h and 100 rpm."
     ),
@@ -355,16 +365,6 @@ GEAR: Mapping[str, Named] = {
         N_("Inertia at the input"), "J_g", "Moment of inertia of the gear at its input; only from a supplement."
     ),
     "no_load_torque_Nm": Named(N_("No-load torque"), "T_0", "No-load torque at the input; only from a supplement."),
-    "ambient_temperature_minimum_degC": Named(N_("Lowest ambient temperature"), "t_min", "Lowest ambient temperature."),
-    "ambient_temperature_maximum_degC": Named(
-        N_("Highest ambient temperature"), "t_max", "Highest ambient temperature."
-    ),
-    "backlash_arcmin": Named(N_("Backlash"), "j", "Largest backlash."),
-    "transmission_accuracy_arcmin": Named(N_("Transmission accuracy"), "φ_a", "Largest transmission error."),
-    "torsional_stiffness_Nm_per_rad": Named(N_("Torsional stiffness"), "K_3", "Torsional stiffness K_3."),
-    "weight_kg": Named(N_("Weight"), "m", "Net weight of the standard version."),
-    "length_min_mm": Named(N_("Shortest length"), "L_min", "Shortest length L; it depends on the motor."),
-    "length_max_mm": Named(N_("Longest length"), "L_max", "Longest length L; it depends on the motor."),
     "clamp_bolts": Named(N_("Motor coupling bolt"), "", "Bolts of the motor coupling."),
     "housing_bolts": Named(N_("Housing bolts"), "", "Bolts of the housing flange."),
     "note": Named(N_("Note"), "", "Note on the size."),

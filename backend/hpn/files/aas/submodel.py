@@ -18,27 +18,20 @@ from basyx.aas import model
 from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
-from hpn.account.motion import mechanism_of, moves_of
-from hpn.account.readings import AT_MOTOR
-from hpn.engine.candidates import FIGURES, Candidate, CheckResult
+from hpn.account.account import UNLIMITED, CheckLine
+from hpn.account.lines import Line, Table, Value
+from hpn.account.published import line_of
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
-from hpn.engine.selection import DutyFigures, encode
+from hpn.engine.selection import encode
 from hpn.files.aas import Metamodel
 from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
 from hpn.files.export import LOSS_FREE, Export
-from hpn.words.motion import MOTION
-from hpn.words.quantities import DUTY, GEAR, INPUTS
-from hpn.words.source import source_sentence
 from hpn.words.units import symbol_of
 from hpn.words.wording import Sentence
 
-Value = str | int | float | None
-
-CALCULATED = ("ratio", "stages", "utilisation", *FIGURES)
-"""Fields of a candidate that are figures."""
-
-OPTIONAL = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "name")
-"""Fields of a phase that only some cycles have."""
+VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
+"""Figures of a phase in which torque or speed varies."""
 
 MANUFACTURER = "Harmonic Drive AG"
 TECHNICAL_DATA = "https://admin-shell.io/ZVEI/TechnicalData/"
@@ -149,14 +142,13 @@ def _general_information(export: Export) -> model.SubmodelElementCollection:
 
 def _technical_properties(export: Export) -> model.SubmodelElementCollection:
     """Published figures; what is not published is left out."""
-    gear, candidate = export.gear(export.candidate), export.candidate
-    figures: dict[str, Value] = {"size": candidate.size, "ratio": candidate.ratio, "stages": candidate.stages}
-    sources: dict[str, Sentence] = {}
-    if gear:
-        figures |= {published(name): getattr(gear, name) for name in GEAR if published(name) in CONCEPTS}
-        sources = {published(name): source_sentence(source) for name, source in gear.sources.items() if name in GEAR}
-    else:
+    account, candidate = export.account, export.candidate
+    figures: dict[str, Value | None] = {"size": candidate.size, "ratio": candidate.ratio, "stages": candidate.stages}
+    lines = [line_of(account.gear, "ratio"), *account.published] if account.gear else []
+    figures |= {published(_name(line)): line.value for line in lines}
+    if not lines:
         figures |= {published(name): value for name, value in _limits(candidate)}
+    sources = {published(_name(line)): line.source for line in lines if line.source}
     return model.SubmodelElementCollection(
         "TechnicalProperties",
         _properties_of(figures, sources),
@@ -164,7 +156,7 @@ def _technical_properties(export: Export) -> model.SubmodelElementCollection:
     )
 
 
-def _limits(candidate: Candidate) -> Iterator[tuple[str, Value]]:
+def _limits(candidate: Candidate) -> Iterator[tuple[str, Value | None]]:
     """Published figures that are the limit of a load check: what a kept answer says without its catalogue."""
     for check in candidate.checks:
         known = BY_CODE.get(check.code)
@@ -210,7 +202,7 @@ def _selection_result(export: Export) -> model.Submodel:
         model.SubmodelElementCollection("Duty", _duty(export)),
         *_cycle(export),
         model.SubmodelElementCollection("Figures", _calculated(export)),
-        model.SubmodelElementCollection("Checks", [_check(export, check) for check in export.candidate.checks]),
+        model.SubmodelElementCollection("Checks", [_check(check) for check in export.account.checks]),
         model.SubmodelElementCollection("Notices", _notices(export)),
     ]
     return model.Submodel(
@@ -250,69 +242,65 @@ MOST_ITEMS = 100
 
 def _duty(export: Export) -> list[model.Property]:
     """Figures of the cycle; of a motion also the inertia of its load."""
-    return _properties_of(_fields(export.selection.duty, (*DUTY, "load_inertia_kgm2")))
+    return _properties_of({_name(line): line.value for line in export.account.cycle})
 
 
 def _cycle(export: Export) -> Iterable[model.SubmodelElementCollection]:
     """A motion as it was given, and the phases where torque or speed vary in them, or where they have names."""
-    cycle = export.application.duty_cycle
-    if cycle.motion is not None:
-        mechanism = {name: value for name, _, value in mechanism_of(cycle.motion)}
-        columns = moves_of(cycle.motion)
-        names = {"name": [move.name for move in cycle.motion.moves]}
-        moves = ({n: values[k] for n, values in (columns | names).items()} for k in range(len(cycle.motion.moves)))
-        parts: list[model.SubmodelElement] = [
-            model.SubmodelElementCollection("Mechanism", _said(mechanism)),
-            *_numbered("Move", moves, len(cycle.motion.moves)),
-        ]
-        yield model.SubmodelElementCollection("Motion", parts)
-    elif not any(getattr(phase, name) is not None for phase in cycle.load_phases for name in OPTIONAL):
-        return
-    phases = (phase.model_dump(exclude_none=True) for phase in cycle.load_phases)
-    yield model.SubmodelElementCollection("Phases", [*_numbered("Phase", phases, len(cycle.load_phases))])
+    account, phases = export.account, export.account.phases
+    if account.moves is not None:
+        mechanism = model.SubmodelElementCollection("Mechanism", _said(account.mechanism))
+        yield model.SubmodelElementCollection("Motion", [mechanism, *_numbered("Move", account.moves)])
+    if phases and (account.moves or any(phases.names.values) or any(_name(c.head) in VARYING for c in phases.columns)):
+        yield model.SubmodelElementCollection("Phases", [*_numbered("Phase", phases)])
 
 
-def _numbered(name: str, items: Iterable[Mapping[str, Value]], count: int) -> Iterable[model.SubmodelElement]:
-    """How many there are, and each of them unless they are very many."""
-    yield model.Property("Count", int, count)
-    if count <= MOST_ITEMS:
-        for number, item in enumerate(items, 1):
-            yield model.SubmodelElementCollection(f"{name}_{number}", _said(item))
+def _numbered(name: str, table: Table) -> Iterable[model.SubmodelElement]:
+    """How many rows there are, and each of them unless they are very many."""
+    yield model.Property("Count", int, len(table))
+    if len(table) <= MOST_ITEMS:
+        for place in range(len(table)):
+            yield model.SubmodelElementCollection(f"{name}_{place + 1}", _said(table.row(place)))
 
 
-def _said(values: Mapping[str, Value]) -> list[model.Property]:
+def _said(lines: Iterable[Line]) -> list[model.Property]:
     """Properties of a mechanism, a move or a phase, each with its name and unit in words."""
     return [
-        model.Property(name, type(value), value, display_name=model.MultiLanguageNameType(_name_of(name)))
-        for name, value in values.items()
-        if value is not None
+        model.Property(
+            _name(line), type(line.value), line.value, display_name=model.MultiLanguageNameType(_named(line))
+        )
+        for line in lines
     ]
 
 
-def _name_of(name: str) -> dict[str, str]:
-    """Name of an input of a motion or a phase in every language, with its unit."""
-    named = next(table[f"{part}{name}"] for part, table in _TABLES if f"{part}{name}" in table)
-    unit = symbol_of(name)
-    return {code: f"{text} [{unit}]" if unit else text for code, text in texts(named.name).items()}
+def _name(line: Line) -> str:
+    """Field of a line, by which a property is called."""
+    return line.code.rpartition(".")[2]
 
 
-_TABLES = (("mechanism.", MOTION), ("move.", MOTION), ("", MOTION), ("phase.", INPUTS))
+def _named(line: Line) -> dict[str, str]:
+    """Name of a line in every language, with its unit."""
+    unit = symbol_of(line.code)
+    return {code: f"{text} [{unit}]" if unit else text for code, text in texts(line.named.name).items()}
 
 
 def _calculated(export: Export) -> list[model.Property]:
     """Figures of the candidate; motor torques without an efficiency are described as a lower bound."""
-    loss_free = AT_MOTOR if export.is_lower_bound(export.candidate) else ()
-    return _properties_of(_fields(export.candidate, CALCULATED), dict.fromkeys(loss_free, Sentence(LOSS_FREE)))
+    candidate, figures = export.candidate, export.account.figures
+    values: dict[str, Value | None] = {name: getattr(candidate, name) for name in ("ratio", "stages", "utilisation")}
+    values |= {_name(line): line.value for line in figures if line.value != UNLIMITED}
+    loss_free = (_name(line) for line in figures if line.is_lower_bound)
+    return _properties_of(values, dict.fromkeys(loss_free, Sentence(LOSS_FREE)))
 
 
-def _fields(part: DutyFigures | Candidate | CheckResult, names: Iterable[str]) -> dict[str, Value]:
-    """Fields of a part of the selection."""
-    return {name: getattr(part, name) for name in names}
-
-
-def _check(export: Export, check: CheckResult) -> model.SubmodelElementCollection:
-    definition = export.selection.check_definitions[check.code]
-    figures = _fields(check, ("demand", "limit", "utilisation", "status"))
+def _check(check: CheckLine) -> model.SubmodelElementCollection:
+    definition, result = check.definition, check.result
+    figures: dict[str, Value | None] = {
+        "demand": result.demand,
+        "limit": result.limit,
+        "utilisation": result.utilisation,
+        "status": result.status,
+    }
     return model.SubmodelElementCollection(
         check.code,
         [*_properties_of(figures), *([model.Property("unit", str, definition.unit)] if definition.unit else [])],
@@ -329,7 +317,7 @@ def _notices(export: Export) -> Iterable[model.MultiLanguageProperty]:
 
 
 def _properties_of(
-    figures: Mapping[str, Value], described: Mapping[str, Sentence] | None = None
+    figures: Mapping[str, Value | None], described: Mapping[str, Sentence] | None = None
 ) -> list[model.Property]:
     """Properties of the figures that have a value, described by their source or by what is to be known of them."""
     described = described or {}

@@ -1,15 +1,15 @@
 """Checks of the reported gear and the equations behind them: symbols, numbers, limits and sources."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
-from hpn.account.readings import Reading, readings_of
-from hpn.engine.candidates import CheckResult
+from hpn.account.account import Account, CheckLine
+from hpn.account.readings import Reading
 from hpn.engine.checks import CHECKS
 from hpn.explain.calculation import Comparison, Step, calculation_of
 from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
 from hpn.files.export import Export
-from hpn.files.words import bound_of, exact_percent, measured, title_of
+from hpn.files.words import exact_percent, measured
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula, sentence
 from hpn.words.terms import VERDICTS
@@ -33,20 +33,19 @@ def checks(export: Export, reader: Reader) -> list[Row]:
         rows.append((last, _of_step(step, export, reader)))
     shown = {step.code for step in steps}
     limits = {limit.code: limit for step in steps for limit in step.comparisons}
-    for check in export.candidate.checks:
+    for check in export.account.checks:
         if check.code not in shown:
-            rows.append((ORDER.get(check.code, len(ORDER)), _of_check(check, limits.get(check.code), export, reader)))
+            rows.append((ORDER.get(check.code, len(ORDER)), _of_check(check, limits.get(check.code), reader)))
     return [row for _, row in sorted(rows, key=lambda row: row[0])]
 
 
 def bases(export: Export, reader: Reader) -> list[tuple[str, Any]]:
     """Title and basis of each check, but for what stands beside its equation or limit."""
     told = AS_LIMITED | (TOLD & {step.code for step in _steps(export)})
-    definitions, codes = export.selection.check_definitions, [check.code for check in export.candidate.checks]
     return [
-        (title_of(export, code, reader), sentence(reader.text(definitions[code].basis)))
-        for code in codes
-        if code not in told
+        (reader.text(check.definition.title), sentence(reader.text(check.definition.basis)))
+        for check in export.account.checks
+        if check.code not in told
     ]
 
 
@@ -58,13 +57,13 @@ def _steps(export: Export) -> tuple[Step, ...]:
 
 
 def _of_step(step: Step, export: Export, reader: Reader) -> Row:
-    check = export.candidate.check(step.code)
+    check = export.account.check(step.code)
     limit = next((limit for limit in step.comparisons if limit.code == step.code), None)
     lines = [
         {"symbols": in_symbols(reader, line), "numbers": substituted(reader, line), "result": result(reader, line)}
         for line in step.lines
     ]
-    row = _of_check(check, limit, export, reader) if check else _row(step.code)
+    row = _of_check(check, limit, reader) if check else _row(step.code)
     if limit and step.lines and limit.tested == step.lines[-1].result:
         lines[-1]["result"], row["limit_formula"] = compared(reader, limit, continued=True), ""
     return row | {
@@ -88,21 +87,19 @@ def _row(code: str) -> Row:
     return blank | {"code": code, "relation": [], "lines": [], "notes": [], "check": None}
 
 
-def _of_check(check: CheckResult, limit: Comparison | None, export: Export, reader: Reader) -> Row:
+def _of_check(check: CheckLine, limit: Comparison | None, reader: Reader) -> Row:
     """Row of a check: its limit as an equation, figures that the equation lacks, and its bar."""
-    code, bound = check.code, bound_of(export, check.code)
-    source = (limit.source or "your input") if limit else export.source(code)
-    row = _row(code) | {
-        "number": export.selection.check_definitions[code].equation or "",
-        "title": sentence(title_of(export, code, reader)),
-        "where": reader.source(source),
+    read, result = check.reading, check.result
+    row = _row(check.code) | {
+        "number": check.definition.equation or "",
+        "title": sentence(reader.text(check.definition.title)),
+        "where": reader.source((limit.source or "your input") if limit else check.source),
         "check": {
-            **bar(check.utilisation, bound, check.status, reader),
-            "word": reader.text(VERDICTS[check.status]),
-            "governs": code == export.candidate.governing_check,
+            **bar(result.utilisation, check.bound, result.status, reader),
+            "word": reader.text(VERDICTS[result.status]),
+            "governs": check.governs,
         },
     }
-    read = readings(export)[code]
     if limit:
         row["limit_formula"] = compared(reader, limit)
         if read.demand == limit.value:
@@ -120,12 +117,6 @@ def bar(utilisation: float | None, bound: float, status: str, reader: Reader) ->
 # --- Demand and limit in words ----------------------------------------------------------------------------------------
 
 
-def readings(export: Export, designation: str = "") -> dict[str, Reading]:
-    """Checks of a candidate, else of the reported one, as their reader finds them."""
-    candidate = export.selection.candidate(designation) or export.candidate
-    return readings_of(candidate, export.selection, export.application, export.figures)
-
-
 def bounds(read: Reading, reader: Reader) -> str:
     """Limit of a check, and the share of it that the user's own u leaves."""
     if read.has_unlimited_limit:
@@ -141,21 +132,20 @@ def demand(read: Reading, reader: Reader) -> str:
     return measured(read.demand, read.unit, reader, read.bound)
 
 
-def failures(export: Export, designation: str, failing: Iterable[CheckResult], reader: Reader) -> str:
-    """Failed checks of a candidate in one sentence's middle."""
-    read = readings(export, designation)
-    text = N_("{check} {demand}, limit {limit} ({percent})")
+def failures(account: Account, reader: Reader) -> str:
+    """Failed checks of a gear in one sentence's middle."""
     return "; ".join(
         reader.told(
             Sentence(
-                text,
+                N_("{check} {demand}, limit {limit} ({percent})"),
                 {
-                    "check": title_of(export, check.code, reader),
-                    "demand": demand(read[check.code], reader),
-                    "limit": bounds(read[check.code], reader),
-                    "percent": reader.percent(check.utilisation, bound_of(export, check.code)),
+                    "check": reader.text(check.definition.title),
+                    "demand": demand(check.reading, reader),
+                    "limit": bounds(check.reading, reader),
+                    "percent": reader.percent(check.result.utilisation, check.bound),
                 },
             )
         )
-        for check in failing
+        for check in account.checks
+        if check.result.status == "fail"
     )

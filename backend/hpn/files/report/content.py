@@ -6,13 +6,12 @@ from typing import Any
 
 import segno
 
-from hpn.account.inputs import LOADS, REQUIREMENTS
-from hpn.account.motion import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
+from hpn.account.inputs import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.engine.notices import on_motor_torques
 from hpn.files.export import Export
 from hpn.files.report import plots, tables
 from hpn.files.report.checks import bases, checks
-from hpn.files.report.listing import listing, moves
+from hpn.files.report.listing import listing
 from hpn.files.report.verdict import alternatives, verdict
 from hpn.files.words import catalogue_version, paper
 from hpn.words.reader import NOTHING, Reader
@@ -78,7 +77,7 @@ LIVES = N_("Hours of operation of the whole cycle, its pause included. L10: 90 %
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
-    text, selection = reader.text, export.selection
+    text, selection, account = reader.text, export.selection, export.account
     labels = {key: text(label) for key, label in LABELS.items()}
     labels |= {key: labels[key].format(gear=export.candidate.designation) for key in ("checks", "ratings")}
     on_motor, pictures = reader.told(on_motor_torques(selection.notices)), plots.pictures_of(export, reader)
@@ -94,19 +93,19 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
         "saved": export.created is not None,
         **_link(export, reader),
         "verdict": verdict(export, reader),
-        "loads": tables.given(export, LOADS, reader),
-        "requirements": tables.given(export, REQUIREMENTS, reader),
-        "motion": tables.motion(export, reader),
-        "phases": tables.phases(export, reader),
-        "move_listing": moves(export, reader),
-        "listing": listing(export, reader),
-        "derived": [*tables.of_cycle(export, reader), *tables.of_gear(export, reader)],
+        "loads": tables.lines(account.loads, reader),
+        "requirements": tables.lines(account.requirements, reader),
+        "motion": tables.motion(account, reader),
+        "phases": tables.phases(account, reader),
+        "move_listing": listing(account.moves, reader),
+        "listing": listing(account.phases, reader),
+        "derived": tables.derived(account, reader),
         "cycle": plots.cycle(export, pictures, reader),
         "planes": plots.planes(export, pictures, reader, on_motor),
         "bearing": plots.envelope(pictures, reader),
         "bearing_alt": text(N_("Loads of the phases within the envelopes of the output bearing")),
         "checks": checks(export, reader),
-        "ratings": tables.ratings(export, reader),
+        "ratings": tables.lines(account.published, reader),
         "alternatives": alternatives(export, reader),
         "basis": _basis(export, reader, on_motor),
         "notices": [sentence(reader.told(notice.sentence)) for notice in selection.notices],

@@ -1,18 +1,13 @@
-"""The phases of a long duty cycle as lines of one width, in as many columns as a page holds.
+"""The phases or moves of a long duty cycle as lines of one width, in as many columns as a page holds.
 
 A table of 10,000 phases would take typst 700 MB, a cell of ten lines a quarter of it.
 """
 
 from typing import Any
 
-from hpn.account.motion import MOVES, moves_of, written
-from hpn.files.export import Export
-from hpn.files.report.tables import MOST_PHASES, columns, number_of, numbers
-from hpn.words.quantities import INPUTS
+from hpn.account.lines import Column, Table
+from hpn.files.report.tables import MOST_PHASES
 from hpn.words.reader import Reader
-from hpn.words.titles import row_label
-from hpn.words.units import suffix_of
-from hpn.words.wording import N_
 
 GROUP = 10
 """Phases of a group, with a little space around."""
@@ -21,31 +16,18 @@ PAGE, GAP = 136, 6
 """Characters across a page, and between its columns."""
 
 
-def listing(export: Export, reader: Reader) -> dict[str, Any] | None:
-    """Each phase of a cycle that the first page only summarises; None where that page has them all."""
-    cycle = export.application.duty_cycle
-    phases, number = cycle.load_phases, number_of(cycle, reader)
-    if len(phases) <= MOST_PHASES:
+def listing(table: Table | None, reader: Reader) -> dict[str, Any] | None:
+    """Each phase or move of a table that the first page only summarises; None where that page has them all."""
+    if table is None or len(table) <= MOST_PHASES:
         return None
-    table = [[head, *texts] for head, texts in numbers(cycle, reader).items()]
-    for name, values in columns(phases).items():
-        unit = suffix_of(name)
-        head = f"{INPUTS[f'phase.{name}'].symbol} [{reader.unit(unit)}]"
-        table.append([head, *("" if value is None else number(value, unit) for value in values)])
-    return _laid_out(table)
+    labels = [[reader.text(head), *texts] for head, texts in table.labels.items()]
+    return _laid_out([*labels, *([_head(column, reader), *column.numbers(reader)] for column in table.columns)])
 
 
-def moves(export: Export, reader: Reader) -> dict[str, Any] | None:
-    """Each move of a motion that the first page only counts; None where that page has them all."""
-    motion = export.application.duty_cycle.motion
-    if motion is None or len(motion.moves) <= MOST_PHASES:
-        return None
-    table = [[reader.text(N_("Move")), *(row_label(k, move.name) for k, move in enumerate(motion.moves))]]
-    for name, values in moves_of(motion).items():
-        unit = reader.unit(suffix_of(name))
-        symbol = MOVES[name].symbol or reader.text(MOVES[name].name)
-        table.append([f"{symbol} [{unit}]" if unit else symbol, *(written(value, name, reader) for value in values)])
-    return _laid_out(table)
+def _head(column: Column, reader: Reader) -> str:
+    line, unit = column.head, reader.unit(column.head.unit)
+    symbol = line.named.symbol or line.label(reader)
+    return f"{symbol} [{unit}]" if unit else symbol
 
 
 def _laid_out(table: list[list[str]]) -> dict[str, Any]:

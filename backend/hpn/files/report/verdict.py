@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from hpn.account.readings import shortest_life, torque_limit_of
+from hpn.account.readings import shortest_life
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.remedy import remedy_of
@@ -51,7 +51,7 @@ NO_PLACE = N_("{count} of {all} gears are suitable")
 def verdict(export: Export, reader: Reader) -> dict[str, Any]:
     """The verdict: gear, status and rank, a sentence, and the check that governs."""
     candidate, code = export.candidate, export.candidate.governing_check
-    limit = torque_limit_of(candidate, export.gear(candidate), export.equipped)
+    limit = export.account.torque_limit
     lines = limit.lines if limit.warns or candidate.status == "suitable" else ()
     said = [reader.told(sentence) for sentence in (*_said(export, reader), *lines)]
     return {
@@ -217,7 +217,7 @@ def _missed(export: Export, candidate: Candidate, reader: Reader) -> str:
     gear, name = export.gear(candidate), candidate.designation
     if gear and gear.weight_kg:
         name = f"{name} ({_published(gear.weight_kg, 'kg', reader)})"
-    failed = failures(export, candidate.designation, candidate.failing, reader)
+    failed = failures(export.account.of(candidate), reader)
     told = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
     remedy = _remedy(export, candidate)
     return f"{told} {reader.told(remedy)}" if remedy else told

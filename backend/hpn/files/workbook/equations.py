@@ -4,9 +4,10 @@ from collections.abc import Mapping
 
 from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
-from hpn.files.report.tables import columns
-from hpn.files.workbook.sheet import Cell, Line, Sheet
-from hpn.words.quantities import CANDIDATE, DUTY, GEAR, INPUTS
+from hpn.account.lines import Line
+from hpn.account.published import line_of
+from hpn.files.workbook.sheet import Cell, Sheet
+from hpn.words.quantities import CANDIDATE, INPUTS
 from hpn.words.reader import Reader
 from hpn.words.titles import row_label
 from hpn.words.units import suffix_of, symbol_of
@@ -76,19 +77,15 @@ def write_equations(sheet: Sheet) -> None:
 
 def _write_figures(sheet: Sheet) -> dict[str, str]:
     """Published figures of the gear and the series, and the names of their cells."""
-    gear, figures = sheet.export.gear(sheet.export.candidate), sheet.export.figures
-    assert gear is not None and figures is not None
-    lines = {
-        name: Line(
-            GEAR[field], getattr(gear, field), suffix_of(field), sheet.reader.source(gear.sources.get(field, ""))
-        )
-        for field, name in RATED.items()
-    }
+    account, figures = sheet.export.account, sheet.export.figures
+    assert account.gear is not None and figures is not None
+    ratio = line_of(account.gear, "ratio")
+    lines = {name: account.line(f"gear.{field}") or ratio for field, name in RATED.items()}
     hours, speed = Named(N_("Life at rated torque and speed")), Named(N_("Rated input speed"))
-    lines["hours"] = Line(hours, figures.life_at_rated_torque_h, "h")
-    lines["n_rated"] = Line(speed, figures.rated_input_speed_rpm, "rpm")
-    lines["u"] = Line(INPUTS["requirements.utilisation"], sheet.export.application.requirements.utilisation)
-    sheet.lines(N_("Published figures"), (line for line in lines.values()))
+    lines["hours"] = Line("", hours, figures.life_at_rated_torque_h, "h", "published")
+    lines["n_rated"] = Line("", speed, figures.rated_input_speed_rpm, "rpm", "published")
+    lines["u"] = Line("requirements.utilisation", INPUTS["requirements.utilisation"], account.utilisation)
+    sheet.lines(N_("Published figures"), lines.values())
     known = [name for name, line in lines.items() if line.value is not None]
     cells = {name: _cell(sheet.row - len(known) + place, 2) for place, name in enumerate(known)}
     return dict.fromkeys(lines, '""') | cells  # a figure that is not published is a blank in every formula
@@ -110,12 +107,13 @@ def _cells_of_inputs(sheet: Sheet, row: int) -> dict[str, str]:
 def _write_formulas(sheet: Sheet, cells: dict[str, str]) -> None:
     """Write the equations, each with its saved value; their cells join the others."""
     sheet.heads(N_("Equations"))
-    duty, candidate = sheet.export.selection.duty, sheet.export.candidate
+    account = sheet.export.account
     unlimited = sheet.reader.text(N_("unlimited"))
     for name, formula in FORMULAS.items():
-        named = DUTY.get(name) or CANDIDATE[name]
-        value: Cell = getattr(duty if name in DUTY else candidate, name)
-        shown = unlimited if name in CANDIDATE and candidate.is_unlimited(name) else "" if value is None else value
+        line = account.line(f"duty.{name}") or account.line(f"candidate.{name}")
+        line = line or Line("", CANDIDATE[name])  # its version did not know the figure
+        named, value = line.named, line.shown(sheet.reader)
+        shown: Cell = "" if value is None else value
         sheet.put(0, sheet.reader.text(named.name))
         sheet.put(1, named.symbol, "quiet")
         live = "=" + formula.format_map(cells).replace("[unlimited]", unlimited)
@@ -169,11 +167,9 @@ def _write_inputs(sheet: Sheet) -> None:
         sheet.row += 1
     heads = [sheet.head(INPUTS[f"phase.{name}"].symbol, name) for name in BLOCKS]
     sheet.heads(N_("Phases"), sheet.reader.text(N_("Phase")), *heads, numbers=range(1, 1 + len(heads)))
-    phases = application.duty_cycle.load_phases
-    listed = columns(phases)
-    for place, phase in enumerate(phases):
+    for place, phase in enumerate(application.duty_cycle.load_phases):
         sheet.put(0, row_label(place, phase.name), "quiet")
         for column, name in enumerate(BLOCKS, 1):
-            given = listed[name][place] if name in listed else None
+            given = getattr(phase, name)
             sheet.put(column, "" if given is None else given, "input")
         sheet.row += 1

@@ -2,14 +2,15 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
-from hpn.files.export import Export
+from hpn.account.lines import Line, Table, known
+from hpn.files.export import LOWER_BOUND, Export
 from hpn.files.words import Paper, paper
 from hpn.files.workbook import EveryDigit
 from hpn.words.reader import Reader
 from hpn.words.units import symbol_of
-from hpn.words.wording import N_, Named
+from hpn.words.wording import N_
 
 FONT = {"font_name": "Arial", "font_size": 10}
 """A font that has the same widths in every office program, so that pages break alike."""
@@ -59,15 +60,6 @@ ROW_POINTS = 12.75
 Cell = float | str | None
 
 
-class Line(NamedTuple):
-    """A quantity: name and symbol, value in a unit of the wire (a suffix or symbol), and where it comes from."""
-
-    named: Named
-    value: Cell
-    unit: str = ""
-    source: str = ""
-
-
 @dataclass
 class Sheet:
     """A sheet that is written from the top, in its reader's language and units; `row` is the next one."""
@@ -87,10 +79,6 @@ class Sheet:
         elif value is not None:
             self.sheet.write_number(self.row, column, EveryDigit(value), self.styles[style])
 
-    def shown(self, value: Cell, unit: str) -> Cell:
-        """A value as its reader has it: a number in their unit, a text in their language."""
-        return self.reader.text(value) if isinstance(value, str) else self.reader.value(value, unit)
-
     def heads(self, title: str, *heads: str, numbers: Sequence[int] = ()) -> None:
         """Begin a table; heads of numbers stand at the right."""
         self.row += 1
@@ -108,24 +96,29 @@ class Sheet:
 
     def lines(self, title: str, lines: Iterable[Line]) -> None:
         """Table of quantities with a value; nothing where there is none."""
-        known = [line for line in lines if line.value is not None]
-        if not known:
+        with_value, reader = known(lines), self.reader
+        if not with_value:
             return
         self.heads(title)
-        for line in known:
-            self.put(0, self.reader.text(line.named.name))
+        for line in with_value:
+            self.put(0, line.label(reader))
             self.put(1, line.named.symbol, "quiet")
-            self.put(2, self.shown(line.value, line.unit), "figure")
-            self.put(3, self.reader.unit(line.unit), "unit")
-            self.put(4, line.source, "quiet")
+            self.put(2, line.shown(reader), "figure")
+            self.put(3, reader.unit(line.unit) if isinstance(line.value, float | int) else "", "unit")
+            self.put(4, reader.text(LOWER_BOUND) if line.is_lower_bound else line.where(reader), "quiet")
             self.row += 1
 
-    def table(self, title: str, columns: Mapping[str, tuple[str, Sequence[Cell]]]) -> None:
+    def table(self, title: str, table: Table) -> None:
         """Table of columns by their heads, each with the unit of its numbers."""
-        self.heads(title, *columns, numbers=range(1, len(columns)))
-        for row in zip(*(values for _, values in columns.values()), strict=True):
-            for column, (value, (unit, _)) in enumerate(zip(row, columns.values(), strict=True)):
-                self.put(column, self.shown(value, unit) if column else value, "figure" if column else "quiet")
+        text, columns = self.reader.text, table.columns
+        heads = [self.head(c.head.named.symbol or c.head.label(self.reader), c.head.code) for c in columns]
+        first = len(table.labels)
+        self.heads(title, *map(text, table.labels), *heads, numbers=range(1, first + len(heads)))
+        for place, labels in enumerate(zip(*table.labels.values(), strict=True)):
+            for column, label in enumerate(labels):
+                self.put(column, label, "figure" if column else "quiet")
+            for column, each in enumerate(columns, first):
+                self.put(column, each.head.of(each.values[place]).shown(self.reader), "figure")
             self.row += 1
 
     def head(self, text: str, field: str) -> str:

@@ -1,26 +1,20 @@
 """The workbook: title block, checks, figures and notes, all inputs, every candidate, and the printed equations."""
 
-from collections.abc import Iterator
 from datetime import UTC, datetime
 from io import BytesIO
-from typing import Any
 
 import xlsxwriter
 
-from hpn.account.readings import AT_MOTOR, Reading, figure_symbol
-from hpn.engine.candidates import FIGURES
-from hpn.files.export import LOWER_BOUND, Export
-from hpn.files.report.checks import readings
-from hpn.files.words import catalogue_version, equation, origin
+from hpn.account.readings import Reading
+from hpn.files.export import Export
+from hpn.files.words import catalogue_version
 from hpn.files.workbook.candidates import write_candidates
 from hpn.files.workbook.equations import write_equations
 from hpn.files.workbook.inputs import write_inputs
-from hpn.files.workbook.sheet import FONT, LONGEST_TEXT, ROW_POINTS, STYLES, VERDICT_STYLES, Cell, Line, Sheet
-from hpn.words.quantities import CANDIDATE, DUTY, GEAR
+from hpn.files.workbook.sheet import FONT, LONGEST_TEXT, ROW_POINTS, STYLES, VERDICT_STYLES, Cell, Sheet
 from hpn.words.reader import Reader
 from hpn.words.terms import VERDICTS
-from hpn.words.units import suffix_of
-from hpn.words.wording import N_, Named
+from hpn.words.wording import N_
 
 UNDATED = datetime(1980, 1, 1)
 """Creation time of the workbook of a selection that is not saved: the earliest that its container can hold."""
@@ -54,10 +48,10 @@ def workbook(export: Export, reader: Reader) -> bytes:
 def _write_selection(sheet: Sheet) -> None:
     _write_title_block(sheet)
     _write_checks(sheet)
-    export, reader = sheet.export, sheet.reader
-    sheet.lines(N_("Figures of the cycle"), _figures_of_cycle(export, reader))
-    sheet.lines(N_("Figures of the gear under the cycle"), _figures_of_gear(export, reader))
-    sheet.lines(N_("Published figures"), _ratings(export, reader))
+    account = sheet.export.account
+    sheet.lines(N_("Figures of the cycle"), account.cycle)
+    sheet.lines(N_("Figures of the gear under the cycle"), account.figures)
+    sheet.lines(N_("Published figures"), account.published)
     _write_notes(sheet)
     sheet.page(WIDTHS, columns=len(WIDTHS))
 
@@ -108,19 +102,18 @@ CHECK_HEADS = (
 
 
 def _write_checks(sheet: Sheet) -> None:
-    text, definitions = sheet.reader.text, sheet.export.selection.check_definitions
-    read = readings(sheet.export)
+    text = sheet.reader.text
     sheet.heads(N_("Checks"), *map(text, CHECK_HEADS), numbers=(2, 3, 5))
-    for check in sheet.export.candidate.checks:
-        reading, definition = read[check.code], definitions[check.code]
+    for check in sheet.export.account.checks:
+        definition, result, reading = check.definition, check.result, check.reading
         sheet.put(0, text(definition.title), "wrap")
         sheet.put(1, reading.relation, "quiet")
         for column, value in enumerate(_sides(sheet, reading), 2):
             sheet.put(column, value, "figure")
         sheet.put(4, sheet.reader.unit(reading.unit), "unit")
-        sheet.put(5, check.utilisation, "share")
-        sheet.put(6, text(VERDICTS[check.status]), VERDICT_STYLES[check.status])
-        sheet.put(7, origin(sheet.export, check.code, sheet.reader), "quiet")
+        sheet.put(5, result.utilisation, "share")
+        sheet.put(6, text(VERDICTS[result.status]), VERDICT_STYLES[result.status])
+        sheet.put(7, check.where(sheet.reader), "quiet")
         sheet.put(8, f"{text(definition.tests)} {text(definition.basis)}", "quiet")
         sheet.sheet.set_row(sheet.row, ROW_POINTS * (1 + len(text(definition.title)) // WIDTHS[0]))
         sheet.row += 1
@@ -135,34 +128,8 @@ def _write_checks(sheet: Sheet) -> None:
 def _sides(sheet: Sheet, reading: Reading) -> tuple[Cell, Cell]:
     """Demand and limit; the word where one is unlimited."""
     unlimited = sheet.reader.text(N_("unlimited"))
-    demand, limit = (sheet.shown(value, reading.unit) for value in (reading.demand, reading.limit))
+    demand, limit = (sheet.reader.value(value, reading.unit) for value in (reading.demand, reading.limit))
     return unlimited if reading.has_unlimited_demand else demand, unlimited if reading.has_unlimited_limit else limit
-
-
-# --- Figures ----------------------------------------------------------------------------------------------------------
-
-
-def _figures_of_cycle(export: Export, reader: Reader) -> Iterator[Line]:
-    for name, named in DUTY.items():
-        yield Line(named, getattr(export.selection.duty, name), suffix_of(name), equation(named.equation, reader))
-
-
-def _figures_of_gear(export: Export, reader: Reader) -> Iterator[Line]:
-    candidate, turns = export.candidate, export.selection.turns_motor
-    for name in FIGURES:
-        named, value = CANDIDATE[name], getattr(candidate, name)
-        bound = name in AT_MOTOR and export.is_lower_bound(candidate)
-        source = reader.text(LOWER_BOUND) if bound else equation(named.equation, reader)
-        shown = N_("unlimited") if candidate.is_unlimited(name) else value
-        yield Line(Named(named.name, figure_symbol(name, turns_motor=turns)), shown, suffix_of(name), source)
-
-
-def _ratings(export: Export, reader: Reader) -> Iterator[Line]:
-    gear = export.gear(export.candidate)
-    for name, named in GEAR.items() if gear else ():
-        value: Any = getattr(gear, name)
-        if suffix_of(name) and gear:
-            yield Line(named, value, suffix_of(name), reader.source(gear.sources.get(name, "")))
 
 
 def _write_notes(sheet: Sheet) -> None:

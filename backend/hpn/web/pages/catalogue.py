@@ -9,6 +9,7 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 
+from hpn.account.published import groups_of
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.catalogue.ordering import OrderingCode, ordering_code
@@ -19,7 +20,7 @@ from hpn.web.door.pools import worked
 from hpn.web.door.visit import absolute, current
 from hpn.web.form.labels import query_of
 from hpn.web.form.linked import carried_pairs, onward, query_part
-from hpn.web.pages.gear_figures import figures_of, neighbours, series_figures, supplements_for
+from hpn.web.pages.gear_figures import neighbours, series_figures, supplements_for
 from hpn.web.pages.rendering import page
 from hpn.words.designations import canonical_designation, canonical_size
 
@@ -126,7 +127,7 @@ def show_gear(request: Request) -> Response:
         "gear.html",
         200,
         gear=gear,
-        groups=figures_of(gear),
+        groups=groups_of(gear),
         missing=supplements_for(gear),
         series_figures=series_figures,
         envelope=gear_envelope(catalogue, gear, current()),

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
-from hpn.explain.differences import is_same
+from hpn.explain.comparison import is_same
 from hpn.fleet.columns import AXIS
 from hpn.fleet.listing import MOST_BYTES, MOST_LISTED, AxisRow, KeptListing, read_answers, rows_of
 from hpn.fleet.summary import Summary, summary_of

@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from urllib.parse import quote
 
+from hpn.account.account import Account
 from hpn.application import Application, OutputLoad
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import Selection
-from hpn.explain.comparison import MOST_PINS, Column, RowGroup, groups_of, lighter_miss, undominated
+from hpn.explain.comparison import MOST_PINS, RowGroup, groups_of, lighter_miss, undominated
 from hpn.web.form.form import Form
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.link_writer import to_link
@@ -38,19 +39,17 @@ class Insight:
         return to_link(self.application.model_copy(update={"output_load": lasting}))
 
     @cached_property
-    def columns(self) -> tuple[Column, ...]:
+    def columns(self) -> tuple[Account, ...]:
         """The gears side by side: the chosen one, and the others that are pinned or else the one that comes next."""
         shown = [self.chosen, *(self.everything[pin] for pin in self.pins if pin != self.chosen.designation)]
         if len(shown) == 1 and (second := self._second()):
             shown.append(second)
-        return tuple(Column(entry, self.catalogue.by_designation[entry.designation]) for entry in shown)
+        return tuple(Account(self.selection, entry, self.application, self.catalogue) for entry in shown)
 
     @property
-    def groups(self) -> tuple[RowGroup, ...]:
+    def groups(self) -> list[RowGroup]:
         """The rows of the comparison."""
-        titles = {code: definition.title for code, definition in self.selection.check_definitions.items()}
-        at_rest = self.application.requirements.position_error_at == "rest"
-        return groups_of(self.columns, self.selection.duty.maximum_torque_Nm, titles, at_rest=at_rest)
+        return groups_of(self.columns)
 
     @cached_property
     def undominated(self) -> frozenset[str]:

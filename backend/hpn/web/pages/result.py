@@ -5,11 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from hpn.account.readings import Life, Reading, TorqueLimit, readings_of, shortest_life, torque_limit_of
+from hpn.account.account import Account
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.allowed import with_listed_motor
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
 from hpn.engine.remedy import Alternative, Growth, condition_of, growths_of, remedy_of
@@ -94,9 +93,9 @@ class Result:
         return {code: allowed(code, self.utilisation) for code in (None, *self.selection.check_definitions)}
 
     @cached_property
-    def readings(self) -> Mapping[str, Reading]:
-        """Demand and limit of the chosen candidate's checks as an engineer reads them, by code."""
-        return readings_of(self.chosen, self.selection, self.application, self.catalogue)
+    def account(self) -> Account:
+        """What is said of the chosen candidate."""
+        return Account(self.selection, self.chosen, self.application, self.catalogue)
 
     @property
     def gear(self) -> Gear | None:
@@ -118,14 +117,6 @@ class Result:
             return None
         return Drive(self.application, self.gear, self.catalogue, self.selection)
 
-    @cached_property
-    def torque_limit(self) -> TorqueLimit:
-        """Torque limit of the drive on the chosen gear, and what the cycle needs above it."""
-        equipped = self.application
-        if equipped is not None and self.catalogue is not None:
-            equipped = with_listed_motor(equipped, self.catalogue)
-        return torque_limit_of(self.chosen, self.gear, equipped)
-
     @property
     def utilisation(self) -> float:
         """Largest utilisation that was accepted."""
@@ -140,11 +131,6 @@ class Result:
     def lighter(self) -> Candidate | None:
         """The nearest miss that is lighter than the selected gear."""
         return lighter_miss(self.selection, self.selection.selected, self.gears)
-
-    @property
-    def shortest_life(self) -> Life | None:
-        """The shortest life of the chosen gear; None where none is known."""
-        return shortest_life(self.chosen)
 
     @cached_property
     def listed(self) -> CandidateList:

@@ -11,24 +11,22 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
-from hpn.account.inputs import LOADS, REQUIREMENTS, given
-from hpn.account.motion import lines, move_line
+from hpn.account.published import published, ranged
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import read_ordering_code
 from hpn.engine.candidates import reason_of
 from hpn.engine.selection import Selection
-from hpn.explain.differences import Difference, FigureDifference, is_number
+from hpn.explain.comparison import Row, is_number, rows_of
+from hpn.explain.differences import Difference, FigureDifference
 from hpn.files.export import DIGITS
 from hpn.files.report.content import qr_code
-from hpn.files.report.tables import number_of
 from hpn.store import ID, SavedSelection
 from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
 from hpn.web.pages import calculator
-from hpn.web.pages.gear_figures import Figure, all_figures
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
 from hpn.web.pages.saving import REASON
@@ -37,7 +35,8 @@ from hpn.words.terms import VERDICTS
 from hpn.words.units import symbol_of
 from hpn.words.wording import N_, Sentence
 
-DIFFERENCES_ON_PAGE = 100
+DIFFERENCES_ON_PAGE, MOST_ROWS = 100, 100
+"""Differences, and rows of a table of inputs, that the page shows."""
 
 NAMES: Mapping[str, str] = {
     "selected": N_("Selected gear"),
@@ -130,21 +129,11 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         "ordering": _ordering(reopened.saved, catalogue),
         "engine_version": ENGINE_VERSION,
         "document": reopened.saved.application.decode(),
-        "inputs": list(given(application, (*LOADS, *REQUIREMENTS), current())) if application else [],
-        **_motion(application),
-        "number": number_of(application.duty_cycle, replace(current(), digits=DIGITS)) if application else None,
+        "filed": replace(current(), digits=DIGITS),
+        "most_rows": MOST_ROWS,
         "exports": EXPORTS,
         "longest_link": MAXIMUM_QUERY_BYTES,
     }
-
-
-def _motion(application: Application | None) -> dict[str, Any]:
-    """Mechanism and moves of a motion as they were given, line by line; none where phases were given."""
-    motion = application.duty_cycle.motion if application else None
-    if motion is None:
-        return {"motion": [], "moves": []}
-    moves = [move_line(motion, place, current()) for place in range(len(motion.moves))]
-    return {"motion": list(lines(motion, current())), "moves": moves}
 
 
 def result_of(
@@ -166,11 +155,10 @@ def result_of(
     )
 
 
-def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[tuple[Figure, Figure | None]]:
-    """Published figures of a gear, each with today's where that differs; none where the catalogue of then is lost."""
-    before, after = (all_figures(one.by_designation.get(designation) if one else None) for one in (then, today))
-    pairs = zip(before, after or before, strict=bool(before))
-    return [(old, None if old.values == new.values else new) for old, new in pairs]
+def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[Row]:
+    """Published figures of a gear then and today; none where the catalogue of then is lost."""
+    gears = [one.by_designation.get(designation) if one else None for one in (then, today)]
+    return rows_of(*(ranged(published(gear)) for gear in gears)) if gears[0] else []
 
 
 def _gears(figures: Sequence[FigureDifference] | None, *, gone: bool) -> list[str]:

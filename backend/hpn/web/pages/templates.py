@@ -14,6 +14,7 @@ from jinja2.runtime import Context
 from markupsafe import Markup, escape
 from starlette.datastructures import State
 
+from hpn.account.lines import Line
 from hpn.account.readings import shortest_life, stiffness_of
 from hpn.catalogue.ordering import MOTOR_CODE, ordering_code
 from hpn.engine.candidates import REASONS, Candidate, reason_of
@@ -219,6 +220,15 @@ def _followed(_: Context, moves: Iterable[Move]) -> dict[str, str]:
     }
 
 
+def _of_line(method: str) -> Callable[..., str]:
+    # With the context, likewise.
+    def read(_: Context, line: Line) -> str:
+        text: str = getattr(line, method)(current())
+        return text
+
+    return pass_context(read)
+
+
 @pass_context
 def _stiffness(_: Context, candidate: Candidate) -> str:
     """Natural frequency and position error of a candidate."""
@@ -261,6 +271,9 @@ FILTERS: dict[str, Callable[..., Any]] = {
         write.__name__: _as_mathml(write)
         for write in (mathml.in_symbols, mathml.substituted, mathml.result, mathml.compared)
     },
+    "number": _of_line("number"),
+    "text": _of_line("text"),
+    "where": _of_line("where"),
     **{
         name: _for_reader(name)
         for name in ("exact", "fixed", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")

@@ -1,0 +1,142 @@
+"""Lines and tables of an account: named quantities with value, unit and source, as number or text for any reader."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from hpn.engine.notice import AREAS
+from hpn.words.designations import OTHERS
+from hpn.words.reader import Reader
+from hpn.words.terms import BEARING_MODELS, FOR_OTHERS, LIFE_BASES, MECHANISMS, POSITION_ERROR_AT, PROFILES, RANKINGS
+from hpn.words.wording import N_, Named, Sentence
+
+Value = float | str | Sentence | Mapping[str, float]
+"""A number in the unit of its line, one for each size, or a text: a code, a msgid, the user's own, or a sentence."""
+
+Kind = Literal["entered", "computed", "published"]
+
+
+WORDS: Mapping[str, str] = {
+    **BEARING_MODELS,
+    **LIFE_BASES,
+    **POSITION_ERROR_AT,
+    **MECHANISMS,
+    **PROFILES,
+    **{code: ranking.choice for code, ranking in RANKINGS.items()},
+    "True": N_("yes"),
+    "False": N_("no"),
+    **{str(area): text for area, text in AREAS.items()},
+}
+"""Values that are a code, in words."""
+
+TYPED = ("requirements.motor.designation", "phase.name", "motion.move.name")
+"""Inputs that are a text of the user's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A quantity by its place in `QUANTITIES`. Its value is None where there is none, though it is asked for.
+
+    `unit` is a suffix. `until` ends a range that begins with the value, and `sign` says of a bound that it is one.
+    What was entered or is published is written as it stands, and a computed number rounded.
+    """
+
+    code: str
+    named: Named
+    value: Value | None = None
+    unit: str = ""
+    kind: Kind = "entered"
+    source: Sentence | None = None
+    until: float | None = None
+    sign: str = ""
+    is_lower_bound: bool = False
+    is_supplied: bool = False
+
+    def of(self, value: Value | None) -> "Line":
+        """The same quantity with another value."""
+        return replace(self, value=value)
+
+    def shown(self, reader: Reader) -> float | str | None:
+        """The value for a cell: a number with every digit in the reader's unit, or a text in their language."""
+        if isinstance(self.value, Mapping):
+            return "; ".join(f"{_size(size, reader)}: {self.of(x).text(reader)}" for size, x in self.value.items())
+        if isinstance(self.value, Sentence):
+            return reader.told(self.value)
+        if isinstance(self.value, str):
+            return self.value if self.code in TYPED else reader.text(WORDS.get(self.value, self.value))
+        return reader.value(self.value, self.unit)
+
+    def number(self, reader: Reader) -> str:
+        """The value as it is read, without its unit: a number, a range or words; blank where there is none."""
+        if not isinstance(self.value, float | int):
+            return str(self.shown(reader) or "")
+        write = reader.figure if self.kind == "computed" else reader.exact
+        until = "" if self.until is None else f" … {write(self.until, self.unit)}"
+        return f"{self.sign}{' ' if self.sign else ''}{write(self.value, self.unit)}{until}"
+
+    def text(self, reader: Reader) -> str:
+        """The value with its unit."""
+        number = self.number(reader)
+        return reader.with_unit(number, self.unit) if isinstance(self.value, float | int) else number
+
+    def label(self, reader: Reader) -> str:
+        """Name of the quantity."""
+        return reader.text(self.named.name)
+
+    def where(self, reader: Reader) -> str:
+        """Where the value comes from; blank for what was entered."""
+        return reader.told(self.source) if self.source else ""
+
+
+def _size(size: str, reader: Reader) -> str:
+    return reader.text(FOR_OTHERS) if size == OTHERS else size
+
+
+def known(lines: Iterable[Line]) -> list[Line]:
+    """Lines that have a value."""
+    return [line for line in lines if line.value is not None]
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One quantity of the rows of a table; None where a row says nothing of it."""
+
+    head: Line
+    values: Sequence[Value | None]
+
+    def numbers(self, reader: Reader) -> list[str]:
+        """Its values without their unit."""
+        return [self.head.of(value).number(reader) for value in self.values]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of one kind, such as phases: columns of labels by their heads (msgids), and columns of values."""
+
+    labels: Mapping[str, Sequence[str]]
+    columns: tuple[Column, ...]
+    names: Column
+
+    def __len__(self) -> int:
+        return len(self.names.values)
+
+    def first(self, count: int) -> "Table":
+        """The first rows."""
+        columns = tuple(replace(column, values=column.values[:count]) for column in self.columns)
+        labels = {head: texts[:count] for head, texts in self.labels.items()}
+        return Table(labels, columns, replace(self.names, values=self.names.values[:count]))
+
+    def row(self, place: int) -> list[Line]:
+        """What one row says, its name first."""
+        return known(column.head.of(column.values[place]) for column in (self.names, *self.columns))
+
+    def values(self) -> Iterator[Mapping[str, Value]]:
+        """Values of each row by the places of their quantities."""
+        columns = (self.names, *self.columns)
+        codes = [column.head.code for column in columns]
+        for row in zip(*(column.values for column in columns), strict=True):
+            yield {code: value for code, value in zip(codes, row, strict=True) if value is not None}
+
+    def text(self, place: int, reader: Reader) -> str:
+        """One row in one line, figures with their units."""
+        return " · ".join(line.text(reader) for line in self.row(place))

@@ -1,0 +1,140 @@
+"""Published figures of a gear as lines with their sources, and in the groups that a page shows."""
+
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TypeVar
+
+from hpn.account.lines import Line
+from hpn.catalogue.gear import Gear
+from hpn.words.quantities import GEAR
+from hpn.words.source import source_sentence
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Named, Quantity, Sentence, listed
+
+T = TypeVar("T")
+
+FIGURES = tuple(name for name in GEAR if suffix_of(name))
+"""Published figures, in the order in which they are listed."""
+
+GROUPS: Mapping[str, str] = {
+    "rated_torque_Nm": N_("Torque at the output"),
+    "maximum_input_speed_rpm": N_("Speed at the input, temperature"),
+    "backlash_arcmin": N_("Accuracy and stiffness"),
+    "length_min_mm": N_("Size and weight"),
+    "dynamic_radial_load_N": N_("Output bearing"),
+    "inertia_kgm2": N_("At the input"),
+    "clamp_bolts": N_("Bolts"),
+}
+"""Titles of the groups of a page, by the figure that each begins with."""
+
+RANGES: Mapping[str, tuple[str, str]] = {
+    "ambient_temperature_minimum_degC": ("ambient_temperature_maximum_degC", N_("Ambient temperature")),
+    "length_min_mm": ("length_max_mm", N_("Length, depending on the motor")),
+}
+"""Figures that begin a range: the figure that ends it, and the name of both."""
+
+AT_MOST = ("backlash_arcmin", "transmission_accuracy_arcmin")
+"""Figures that are published as an upper limit."""
+
+
+def published(gear: Gear | None) -> list[Line]:
+    """Every published figure of a gear, None where its source has none; nothing of a gear that is not known."""
+    return [line_of(gear, name) for name in FIGURES] if gear else []
+
+
+def line_of(gear: Gear, name: str) -> Line:
+    """One figure of a gear, such as its ratio."""
+    source = gear.sources.get(name)
+    return Line(
+        f"gear.{name}",
+        GEAR[name],
+        getattr(gear, name),
+        suffix_of(name),
+        "published",
+        source_sentence(source) if source else None,
+        sign="≤" if name in AT_MOST else "",
+        is_supplied=gear.is_supplied(name),
+    )
+
+
+def groups_of(gear: Gear) -> list[tuple[str, list[Line]]]:
+    """The same by group, ranges as one line."""
+    return grouped(ranged(published(gear)), lambda line: line.code)
+
+
+def grouped(items: Iterable[T], code_of: Callable[[T], str]) -> list[tuple[str, list[T]]]:
+    """Lines or rows of published figures, in their order, under the titles of their groups."""
+    groups = itertools.groupby(items, lambda item: _GROUP_OF[code_of(item).removeprefix("gear.")])
+    return [(title, list(group)) for title, group in groups]
+
+
+def _group_of_each() -> Iterator[tuple[str, str]]:
+    title = ""
+    for name in GEAR:
+        title = GROUPS.get(name, title)
+        yield name, title
+
+
+_GROUP_OF = dict(_group_of_each())
+
+
+def ranged(lines: list[Line]) -> list[Line]:
+    """Published figures with each range as one line; of equal ends, or where one is missing, the number alone."""
+    by_name = {_name(line): line for line in lines}
+    ends = {end for end, _ in RANGES.values()}
+    return [_range(line, by_name) if name in RANGES else line for name, line in by_name.items() if name not in ends]
+
+
+def _range(first: Line, by_name: Mapping[str, Line]) -> Line:
+    end, name = RANGES[_name(first)]
+    values = list(dict.fromkeys(one.value for one in (first, by_name[end]) if isinstance(one.value, float | int)))
+    named = next((one for one in (first, by_name[end]) if one.value is not None), first)
+    return Line(
+        first.code,
+        Named(name),
+        values[0] if values else None,
+        first.unit,
+        "published",
+        named.source,
+        values[1] if len(values) == 2 else None,
+        is_supplied=first.is_supplied or by_name[end].is_supplied,
+    )
+
+
+def _name(line: Line) -> str:
+    return line.code.removeprefix("gear.")
+
+
+# --- Bolts ------------------------------------------------------------------------------------------------------------
+
+
+def bolts(gear: Gear | None) -> list[Line]:
+    """Bolts of housing and motor coupling, each in one line."""
+    if gear is None:
+        return []
+    values = {"housing_bolts": _housing_bolts(gear), "clamp_bolts": _clamp_bolts(gear)}
+    return [Line(f"gear.{name}", GEAR[name], value, kind="published") for name, value in values.items()]
+
+
+def _housing_bolts(gear: Gear) -> Sentence | None:
+    bolts = gear.housing_bolts
+    if bolts is None or bolts.bolt_size is None:
+        return None
+    parts = [Sentence("{number} × {bolt}", {"number": bolts.number_of_bolts or "?", "bolt": bolts.bolt_size})]
+    if bolts.pitch_diameter_mm is not None:
+        parts.append(Sentence("Ø\u00a0{diameter}", {"diameter": Quantity(bolts.pitch_diameter_mm, "mm", 4)}))
+    if bolts.tightening_torque_Nm is not None:
+        parts.append(Sentence("{torque}", {"torque": Quantity(bolts.tightening_torque_Nm, "Nm", 4)}))
+    return listed(parts)
+
+
+def _clamp_bolts(gear: Gear) -> Sentence | None:
+    parts = [
+        Sentence("{bolt}", {"bolt": bolt.bolt_size})
+        if bolt.tightening_torque_Nm is None
+        else Sentence(
+            "{bolt} {torque}", {"bolt": bolt.bolt_size, "torque": Quantity(bolt.tightening_torque_Nm, "Nm", 4)}
+        )
+        for bolt in gear.clamp_bolts
+    ]
+    return listed(parts, Sentence(N_("{first} or {rest}")).template) if parts else None
