@@ -227,3 +227,27 @@ def test_a_row_of_units_makes_an_emergency_stop_a_torque() -> None:
 )
 def test_a_column_with_one_possible_meaning_is_not_asked(heading: str, role: str) -> None:
     assert read(f"{HEAD};{heading}", "A;1;9;1;14").columns[4].role == role
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell", "taken"),
+    [
+        ("Shaft’s centre at", "21", 21.0),
+        ("output_load.shaft_centre_mm", '{"20A": 21, "others": 18.5}', {"20A": 21.0, "others": 18.5}),
+        ("Wellenmitte bei", "20A: 21,5; übrige: 18", {"20A": 21.5, "others": 18.0}),
+        ("Shaft’s centre at [in]", "20: 1; others: 18 mm", {"20A": 25.4, "others": 18.0}),
+        ("Wellenmitte bei", "20A: 1,234", "20A: 1,234"),
+        ("Wellenmitte bei", "20A: 21; 20: 22", "20A: 21; 20: 22"),
+        ("output_load.shaft_centre_mm", '{"20A": 21, "20A": 22}', '{"20A": 21, "20A": 22}'),
+        ("output_load.shaft_centre_mm", '{"20A": [21]}', '{"20A": [21]}'),
+        ("output_load.shaft_centre_mm", '{"20A": 21', '{"20A": 21'),
+        ("output_load.shaft_centre_mm", "{}", "{}"),
+    ],
+)
+def test_the_shafts_centre_is_read_by_size_too(heading: str, cell: str, taken: object) -> None:
+    """A cell that is neither a number nor numbers by size is named in a note, and goes on as it is written."""
+    lines = [f"Axis\tTorque [Nm]\tSpeed [rpm]\tDuration [s]\t{heading}", f"A\t10\t1\t1\t{cell}"]
+    table = read(*lines)
+
+    assert table.axes[0]["output_load.shaft_centre_mm"] == taken
+    assert any("not numbers" in note.text for note in table.notes) == isinstance(taken, str)

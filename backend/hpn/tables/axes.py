@@ -5,12 +5,14 @@ A cell that is no number spoils its axis alone, which is then rejected with its 
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby, pairwise, product
 from math import isfinite
 from typing import Any
 
 from hpn.tables.bodies import Body, body_of
-from hpn.tables.cells import LONGEST_CELL, Decimal, Entry, Merged, entry, is_blank, is_number
+from hpn.tables.by_size import numbers_by_size
+from hpn.tables.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Merged, entry, is_blank, is_number
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
 from hpn.tables.headings import is_stop
 from hpn.tables.heads import REQUIRED, left_out, skipped
@@ -144,7 +146,7 @@ class _AxesInterpreter(Interpreter):
                 elif column.quantity and (unit := unit_behind(cell)) and not spellings.codes_for(unit):
                     unknown.append((number, cell))
                     known = known or known_units(column.quantity)
-                elif not is_blank(cell):
+                elif not is_blank(cell) and self._by_size(cell, column) is None:
                     wrong.append((number, cell))
         self._note(
             N_("Cells that are not numbers, such as {cell} in row {row}: {count}. Their axes are rejected."), wrong
@@ -275,10 +277,23 @@ class _AxesInterpreter(Interpreter):
 
     def _number(self, cell: str, found: Entry | None, column: Column) -> float | str | None:
         """A number in the unit of the wire; the cell as it is written where it is none, None where it is blank."""
+        value = self._value(found, column)
+        return value if value is not None or is_blank(cell) else str(cell)
+
+    def _value(self, found: Entry | None, column: Column) -> float | None:
         number = self.in_wire(found, column) if found else ""
-        if number and isfinite(value := float(number)):
-            return value
-        return None if is_blank(cell) else str(cell)
+        return value if number and isfinite(value := float(number)) else None
+
+    def _by_size(self, cell: str, column: Column) -> dict[str, float] | None:
+        """Numbers by size of a cell in the unit of the wire; None where it has none, or its column may have none."""
+        if column.held is None or column.held.kind != "by_size":
+            return None
+        marks: Sequence[Decimal] = DECIMALS if not cell.lstrip().startswith("{") else (".",)
+        readings = [found for mark in marks if (found := numbers_by_size(cell, partial(self._read, column, mark)))]
+        return readings[0] if readings and readings[0] == readings[-1] else None  # no mark is guessed
+
+    def _read(self, column: Column, decimal: Decimal, number: str) -> float | None:
+        return self._value(entry(number, decimal, any_unit=True), column)
 
     def _one(self, found: dict[str, Entry | None], column: Column) -> Any:
         """Value that the rows of an axis have in common; where they have two, these as they are written: no input."""
@@ -289,7 +304,7 @@ class _AxesInterpreter(Interpreter):
         if many:
             values: list[Any] = [_listed(cell, column.held.kind == "text", self.decimal or ".") for cell in given]
         else:
-            values = [self._number(cell, found[cell], column) for cell in given]
+            values = [self._by_size(cell, column) or self._number(cell, found[cell], column) for cell in given]
         if all(value == values[0] for value in values):
             return values[0]
         written = " / ".join(given[:3])

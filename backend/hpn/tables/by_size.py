@@ -1,6 +1,7 @@
 """Numbers by size as people type them: `21` for all sizes, or `20A: 21; 32A: 30; others: 18`."""
 
-from collections.abc import Iterable
+import json
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import NamedTuple
 
@@ -55,6 +56,20 @@ def by_size(text: str) -> BySize:
             Part(size.strip(), number.strip()) if is_sized else Part("", piece.strip() if ";" in text else piece)
         )
     return BySize(parts)
+
+
+def numbers_by_size(cell: str, read: Callable[[str], float | None]) -> dict[str, float] | None:
+    """Numbers by size in a cell, typed or as an object of JSON, each as `read` reads it; None for any other cell."""
+    parts = by_size(cell).parts
+    if cell.lstrip().startswith("{"):
+        try:
+            pairs = json.loads(cell, object_pairs_hook=list)  # a size given twice is none of both
+        except (ValueError, RecursionError):
+            return None
+        parts = tuple(Part(size, str(number)) for size, number in pairs)
+    numbers = {part.place: number for part in parts if (number := read(part.number)) is not None}
+    is_whole = len(numbers) == len(parts) and any(part.size for part in parts)
+    return numbers if is_whole else None
 
 
 @cache
