@@ -74,7 +74,7 @@ def test_every_candidate_has_the_numbers_of_the_reply_with_all_their_digits(case
     for gear in selection.candidates:
         row = listed[gear.designation]
         for name in FIGURES:
-            symbol = figure_symbol(name, turns_motor=selection.turns_motor) or CANDIDATE[name].name
+            symbol = figure_symbol(name, adds_at_motor=selection.adds_at_motor) or CANDIDATE[name].name
             unit = ENGLISH.unit(suffix_of(name))
             shown = row.get(f"{symbol} [{unit}]" if unit else symbol)
             assert shown == getattr(gear, name) or (shown == "unlimited" and getattr(gear, name) is None), name

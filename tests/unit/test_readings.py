@@ -5,11 +5,13 @@ import random
 
 import pytest
 
+from hpn.account.account import Account
 from hpn.account.readings import Reading, readings_of
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from tests.build import Json, cycle, phase, worked_example
+from tests.conftest import Supplement
 from tests.property.draw import at_random
 from tests.reference.test_motion import CONTRACT
 
@@ -82,6 +84,25 @@ def test_a_motor_that_is_turned_along_has_torques_of_its_own(catalogue: Catalogu
         read = readings(application, "HPN-20A-5", catalogue)
         assert read["motor_peak_torque"].relation == f"{peak} ≤ T_mot"
         assert read["motor_rated_torque"].relation == f"{rated} ≤ T_mot,N"
+
+
+@pytest.mark.parametrize("ratios", [[5], [4, 5]], ids=["all gears", "some gears"])
+def test_a_torque_with_the_gears_no_load_torque_in_it_is_no_quotient_of_the_loads(
+    ratios: list[int], supplemented: Supplement
+) -> None:
+    """Nor without a motion; of a gear that the supplement does not name it stays one."""
+    catalogue = supplemented(gears="size,ratio,stages,no_load_torque_Nm,source\n20A,5,1,0.5,measured\n")
+    motor = {"peak_torque_Nm": 50}
+    asked = worked_example(requirements={"motor": motor, "ratios": ratios, "sizes": ["20A"]})
+    application = Application.model_validate(asked)
+    selection = select(application, catalogue)
+
+    for gear in selection.candidates:
+        symbols = [line.named.symbol for line in Account(selection, gear, application, catalogue).figures]
+        relation = readings(asked, gear.designation, catalogue)["motor_peak_torque"].relation
+        own = gear.ratio == 5
+        assert ("T_in,max" in symbols, "T_max/(i·η)" in symbols) == (own, not own)
+        assert relation == f"{'T_in,max' if own else 'T_max / (i · η)'} ≤ T_mot"
 
 
 def test_a_reading_compares_as_its_check_does(catalogue: Catalogue) -> None:

@@ -14,6 +14,7 @@ from hpn.account.readings import (
     Life,
     Reading,
     TorqueLimit,
+    adds_at_motor,
     figure_symbol,
     readings_of,
     shortest_life,
@@ -138,7 +139,7 @@ class Account:
         named = CANDIDATE[name]
         if name == "position_error_arcmin" and self._is_at_rest:
             named = replace(named, name=N_("Position error at rest"))
-        symbol = figure_symbol(name, turns_motor=self.selection.turns_motor)
+        symbol = figure_symbol(name, adds_at_motor=adds_at_motor(self.selection, self.gear))
         value = UNLIMITED if self._is_unlimited(name) else getattr(self.candidate, name)
         kind: Kind = "entered" if name == "stop_torque_Nm" and self._has_typed_stop else "computed"
         line = _computed(f"candidate.{name}", replace(named, symbol=symbol), value, kind)
@@ -233,7 +234,7 @@ class Account:
         assert self.application is not None
         if self.catalogue is not None:
             return self.candidate.designation in self.catalogue.efficiency
-        if self.selection.turns_motor:
+        if self.selection.adds_at_motor:
             return any(notice.code == "efficiency_supplied" for notice in self.selection.notices)
         duty, candidate = Duty.of([self.application]), self.candidate
         shown = np.array([candidate.motor_peak_torque_Nm, candidate.motor_rated_torque_Nm], dtype=np.float64)

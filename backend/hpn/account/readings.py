@@ -110,20 +110,25 @@ def life_of(life_h: float | None, of: LifeOf | None) -> Life:
 
 
 AT_MOTOR = {"motor_peak_torque_Nm": "T_in,max", "motor_rated_torque_Nm": "T_in,rms"}
-"""Symbols of torques at the motor to which its own inertia adds, so that they are no quotient of the load's torque."""
+"""Symbols of torques at the motor to which inertia or no-load torque adds: no quotient of the load's torque."""
 
 _RELATIONS = {"motor_peak_torque": "T_in,max ≤ T_mot", "motor_rated_torque": "T_in,rms ≤ T_mot,N"}
 
 
-def figure_symbol(name: str, *, turns_motor: bool) -> str:
-    """Symbol of a candidate's figure; `turns_motor` says whether the motor's own inertia counts in its torques."""
-    own = AT_MOTOR.get(name) if turns_motor else None
+def adds_at_motor(selection: Selection, gear: Gear | None) -> bool:
+    """True where more than the load's torque counts at the motor of a gear, whose figures may be unknown."""
+    return selection.adds_at_motor or (gear is not None and gear.no_load_torque_Nm is not None)
+
+
+def figure_symbol(name: str, *, adds_at_motor: bool) -> str:
+    """Symbol of a candidate's figure; `adds_at_motor` says whether more than the load's torque counts there."""
+    own = AT_MOTOR.get(name) if adds_at_motor else None
     return own or CANDIDATE[name].symbol
 
 
-def relation_of(code: str, *, turns_motor: bool) -> str:
+def relation_of(code: str, *, adds_at_motor: bool) -> str:
     """Comparison of a check in symbols; blank for a check that this version does not know."""
-    if turns_motor and code in _RELATIONS:
+    if adds_at_motor and code in _RELATIONS:
         return _RELATIONS[code]
     return BY_CODE[code].relation if code in BY_CODE else ""
 
@@ -145,14 +150,14 @@ def readings_of(
             reading = _bearing_life(candidate, check, load, u)
         if check.code == "output_bearing_load" and application and load and catalogue and gear:
             reading = _bearing_load(check, application, load, catalogue, gear, u)
-        readings[check.code] = reading or _as_computed(check, selection, u)
+        readings[check.code] = reading or _as_computed(check, selection, gear, u)
     return readings
 
 
-def _as_computed(check: CheckResult, selection: Selection, u: float) -> Reading:
+def _as_computed(check: CheckResult, selection: Selection, gear: Gear | None, u: float) -> Reading:
     known, definition = BY_CODE.get(check.code), selection.check_definitions[check.code]
     part = known.allowed(u) if known else 1.0
-    relation = relation_of(check.code, turns_motor=selection.turns_motor)
+    relation = relation_of(check.code, adds_at_motor=adds_at_motor(selection, gear))
     larger = check.demand if definition.kind == "minimum" else check.limit
     unlimited = larger is None and check.utilisation is not None
     return Reading(

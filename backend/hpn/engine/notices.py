@@ -38,9 +38,10 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
 
 
-ON_MOTOR_TORQUES = frozenset(
-    ("motor_torque_partial", "motor_losses_included", "motor_inertia_included", "motor_all_included")
-)
+ADDED_AT_MOTOR = frozenset(("motor_losses_included", "motor_inertia_included", "motor_all_included"))
+"""Codes of the notices on motor torques that are no quotient of the load's torque."""
+
+ON_MOTOR_TORQUES = ADDED_AT_MOTOR | {"motor_torque_partial"}
 """Codes of the notices on what the motor torques include; a selection that asks about a motor has one of them."""
 
 

@@ -20,7 +20,7 @@ from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
 from hpn.engine.notice import Notice
-from hpn.engine.notices import notices_of
+from hpn.engine.notices import ADDED_AT_MOTOR, notices_of
 from hpn.words.quantities import DUTY, PHASE
 from hpn.words.reply import Reply, described
 
@@ -105,9 +105,9 @@ class Selection(Reply, frozen=True):
         return self.check_definitions[code].title if titled else name_of(code)
 
     @property
-    def turns_motor(self) -> bool:
-        """True where the motor's own inertia counts in its torques, which a notice says."""
-        return any(notice.code in ("motor_inertia_included", "motor_all_included") for notice in self.notices)
+    def adds_at_motor(self) -> bool:
+        """True where inertia or no-load torque counts in all motor torques, as a notice says."""
+        return any(notice.code in ADDED_AT_MOTOR for notice in self.notices)
 
     def candidate(self, designation: str) -> Candidate | None:
         """The candidate of a designation, or None."""

@@ -145,8 +145,9 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
     """
     figures, motor = subject.of_gear, subject.equipped.requirements.motor or Motor()
     turns = subject.duty.courses.get(0) is not None and motor.inertia_kgm2 is not None
+    adds = turns or subject.gear.no_load_torque_Nm is not None
     peak, rms = (
-        Named(CANDIDATE[name].name, figure_symbol(name, turns_motor=turns))
+        Named(CANDIDATE[name].name, figure_symbol(name, adds_at_motor=adds))
         for name in ("motor_peak_torque_Nm", "motor_rated_torque_Nm")
     )
     limits = (
