@@ -25,6 +25,7 @@ from hpn.store import StoreError
 from hpn.web.app import create_app
 from hpn.web.door import logs, metrics
 from hpn.web.door.hosts import is_loopback
+from hpn.web.door.upgrades import Protocol
 from hpn.web.pages import templates
 from hpn.web.settings import GONE, Settings
 
@@ -95,7 +96,7 @@ def options(settings: Settings) -> dict[str, Any]:
         "host": settings.host,
         "port": settings.port,
         "workers": settings.workers,
-        "http": "httptools",
+        "http": Protocol,
         "ws": "none",
         "log_config": None,
         "access_log": False,
