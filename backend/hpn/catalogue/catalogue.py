@@ -11,7 +11,7 @@ from hpn.physics.bearing import Curve
 from hpn.physics.equations import FloatArray
 from hpn.words.designations import canonical_designation, canonical_size
 from hpn.words.quantities import MOTOR, SERIES
-from hpn.words.reply import described
+from hpn.words.reply import Mixed, described
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class SeriesFigure:
 
     __pydantic_config__ = described(SERIES)
 
-    value: float | str
+    value: Mixed
     unit: str | None
     source: str
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from msgspec import field
 from pydantic import Field
 
-from hpn.words.reply import Reply
+from hpn.words.reply import Mixed, Reply
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Rounding, Sentence
 
@@ -199,15 +199,13 @@ AREAS: Mapping[str, str] = {
 }
 """Application areas of section 2.4 by their code; English msgids."""
 
-Value = float | str
-
 
 class Notice(Reply, frozen=True):
     """A note on the result: a code for programs, its sentence in English, and the values in it."""
 
     code: Annotated[str, Field(description="Code of the notice.")]
     text: Annotated[str, Field(description="The notice.")]
-    values: Annotated[dict[str, Value], Field(description="The values in the notice, each with its unit.")] = field(
+    values: Annotated[dict[str, Mixed], Field(description="The values in the notice, each with its unit.")] = field(
         default_factory=dict
     )
 
@@ -225,11 +223,11 @@ _OTHERWISE = {("size_unrated", "names"): "gears_unrated", ("gear_below_motor", "
 """Other sentences of a code, by a value that they alone have."""
 
 
-def _template_of(code: str, values: Mapping[str, Value]) -> str:
+def _template_of(code: str, values: Mapping[str, Mixed]) -> str:
     return next((_OTHERWISE[code, name] for name in values if (code, name) in _OTHERWISE), code)
 
 
-def _sentence(template: str, values: Mapping[str, Value]) -> Sentence:
+def _sentence(template: str, values: Mapping[str, Mixed]) -> Sentence:
     shown = {name: value if isinstance(value, str) else Quantity(value, *_told(name)) for name, value in values.items()}
     return Sentence(template, shown, TRANSLATED)
 
@@ -239,6 +237,6 @@ def _told(name: str) -> tuple[str, int, Rounding]:
     return suffix_of(name), DIGITS[suffix_of(name)], "down" if name in ("limit_Nm", "share_percent") else "nearest"
 
 
-def notice(code: str, **values: Value) -> Notice:
+def notice(code: str, **values: Mixed) -> Notice:
     """Notice of a code, with its English text."""
     return Notice(code, _sentence(NOTICES[_template_of(code, values)], values).text, values)

@@ -1,14 +1,17 @@
 """Base of a typed reply: encoded by msgspec, described by pydantic, and so in the document that FastAPI writes."""
 
 from collections.abc import Mapping
-from typing import Any, get_args, get_type_hints
+from typing import Annotated, Any, get_args, get_type_hints
 
 from msgspec import UNSET, Struct, UnsetType, structs
-from pydantic import ConfigDict, GetCoreSchemaHandler
+from pydantic import ConfigDict, GetCoreSchemaHandler, WithJsonSchema
 from pydantic_core import CoreSchema, core_schema
 
 from hpn.words.fields import name_units
 from hpn.words.wording import Named
+
+Mixed = Annotated[float | str, WithJsonSchema({"description": "A number or a text."})]
+"""A number or a text, without a type in the document: Kotlin’s and Rust’s clients can’t read a union of both."""
 
 
 def described(named: Mapping[str, Named]) -> ConfigDict:

@@ -23,14 +23,17 @@ def journey(address: str, cycle: dict[str, Any], motion: dict[str, Any]) -> dict
         moved = package.Application(duty_cycle=package.DutyCycle(motion=turning))
         request = package.SaveRequest(application=application, title="Axis 7", reference="python generator")
         saved, again = (kept.save_selection(save_request=request, idempotency_key="python-generator") for _ in range(2))
+        selected, read = selection.select(application), kept.get_selection(saved.id)
         listed = kept.list_selections(reference="python generator")
+        lives = [one.candidates[0].life_l10_h for one in (selected, read.result)]
         return {
-            "selected": selection.select(application).selected,
+            "selected": selected.selected,
+            "figures": [*lives, selected.duty.average_torque_nm],
             "phases": len(selection.select(moved).duty.phases),
             "saved once": saved.id == again.id,
             "listed": [line.title for line in listed.selections],
             "renamed": kept.rename_selection(saved.id, package.Names(title="Axis 8")).title,
-            "read": kept.get_selection(saved.id).result.selected,
+            "read": read.result.selected,
             "deleted": kept.delete_selection_with_http_info(saved.id).status_code,
             "missing": refusal(kept.get_selection, id=saved.id).status,
             "refused": refusal(kept.list_selections, cursor="x").errors[0].pointer,

@@ -40,6 +40,10 @@ const deleted = await kept.deleteSelectionRaw({ id });
 console.log(
     JSON.stringify({
         selected: selected.selected,
+        figures: [
+            ...[selected, read.result].map((one) => one.candidates[0]?.lifeL10H),
+            selected.duty.averageTorqueNm,
+        ],
         "saved once": id === again.id,
         listed: listed.selections.map((line) => line.title),
         renamed: renamed.title,

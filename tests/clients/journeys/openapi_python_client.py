@@ -23,14 +23,18 @@ def journey(address: str, cycle: dict[str, Any], motion: dict[str, Any]) -> dict
         saved, again = (
             call("saved_selections.save_selection", body=request, idempotency_key="python-client") for _ in range(2)
         )
+        selected = call("selection.select", body=application)
+        read = call("saved_selections.get_selection", saved.id)
         listed = call("saved_selections.list_selections", reference="python client")
+        lives = [one.candidates[0].life_l10_h for one in (selected, read.result)]
         return {
-            "selected": call("selection.select", body=application).selected,
+            "selected": selected.selected,
+            "figures": [*lives, selected.duty.average_torque_nm],
             "phases": len(call("selection.select", body=moved).duty.phases),
             "saved once": saved.id == again.id,
             "listed": [line.title for line in listed.selections],
             "renamed": call("saved_selections.rename_selection", saved.id, body=models.Names(title="Axis 8")).title,
-            "read": call("saved_selections.get_selection", saved.id).result.selected,
+            "read": read.result.selected,
             "deleted": call("saved_selections.delete_selection", saved.id),
             "missing": call("saved_selections.get_selection", saved.id).status,
             "refused": call("saved_selections.list_selections", cursor="x").errors[0].pointer,

@@ -29,6 +29,10 @@ const refused = await client.GET("/api/v1/selections", { params: { query: { curs
 console.log(
     JSON.stringify({
         selected: selected.data?.selected,
+        figures: [
+            ...[selected.data, read.data?.result].map((one) => one?.candidates[0]?.life_L10_h),
+            selected.data?.duty.average_torque_Nm,
+        ],
         phases: phases.data?.duty.phases?.length,
         "saved once": saved.data?.id === again.data?.id,
         listed: listed.data?.selections.map((line) => line.title),
