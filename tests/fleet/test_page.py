@@ -335,6 +335,15 @@ def test_a_table_of_hpn_fleet_is_sized_at_once(client: TestClient, tmp_path: Pat
     assert to_link(Application.model_validate(HUB)) in unescape(client.get(sized.headers["location"]).text)
 
 
+def test_names_of_phases_reach_the_link_of_their_axis(client: TestClient) -> None:
+    table = "Achse;Phase;Moment [Nm];Drehzahl [1/min];Dauer [s]\nA;hoch;40;250;1\nA;runter;32;500;2\n"
+
+    sized = post(client, fields={**fields_of(post(client, table.encode()).text), "size": "1"})
+
+    assert sized.status_code == 303
+    assert "n=250&t=1&pn=hoch&T=32&n=500&t=2&pn=runter" in unescape(client.get(sized.headers["location"]).text)
+
+
 @pytest.mark.parametrize("suffix", [".parquet", ".ndjson"])
 def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Path, suffix: str) -> None:
     exact = 0.1 + 0.2

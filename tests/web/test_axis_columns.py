@@ -223,6 +223,19 @@ def test_a_row_of_units_makes_an_emergency_stop_a_torque() -> None:
         ("Emergency-stop torque [Nm]", "Tk"),
         ("Motor inertia [kgm²]", "Jm"),
         ("Backlash [arcmin]", "bl"),
+        ("Jeu angulaire [arcmin]", "bl"),
+        ("Gioco [arcmin]", "bl"),
+        ("Inertie du moteur [kg.cm²]", "Jm"),
+        ("Inerzia motore [kgcm²]", "Jm"),
+        ("Couple d'arrêt d'urgence [Nm]", "Tk"),
+        ("Coppia di emergenza [Nm]", "Tk"),
+        ("Temps de pause [s]", "tp"),
+        ("Tempo di pausa [s]", "tp"),
+        ("Rapport de réduction", "i"),
+        ("Rapporto di riduzione", "i"),
+        ("Température ambiante [°C]", "ta"),
+        ("Lebensdauer Lager [h]", "Lb"),
+        ("Durée de vie du réducteur [h]", "Lh"),
     ],
 )
 def test_a_column_with_one_possible_meaning_is_not_asked(heading: str, role: str) -> None:
@@ -251,3 +264,51 @@ def test_the_shafts_centre_is_read_by_size_too(heading: str, cell: str, taken: o
 
     assert table.axes[0]["output_load.shaft_centre_mm"] == taken
     assert any("not numbers" in note.text for note in table.notes) == isinstance(taken, str)
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        *("required life", "Required life [h]", "Life [h]", "L10 [h]", "Service life (h)", "Lebensdauer [h]"),
+        *("erforderliche Lebensdauer in h", "Nutzungsdauer [h]", "durée de vie [h]", "Durée de vie requise (h)"),
+        *("durata di vita [h]", "Durata richiesta [h]", "vita utile [h]"),
+    ],
+)
+def test_a_life_may_be_the_gears_or_the_bearings_and_is_asked(heading: str) -> None:
+    table = read(f"{HEAD};{heading}", "A;1;9;1;20000")
+
+    assert asked(table) == [f"What is column “{heading}”?"] and not table.axes
+    for role, place in (("Lh", "requirements.life_h"), ("Lb", "output_load.life_h")):
+        assert read(f"{HEAD};{heading}", "A;1;9;1;20000", roles={4: role}).axes[0][place] == 20000
+
+
+@pytest.mark.parametrize("heading", ["Durata [h]", "Durée [h]", "Dauer [h]", "Duration (hours)"])
+def test_so_many_hours_of_an_axis_may_be_its_phase_or_its_life(heading: str) -> None:
+    table = read(f"Asse;Coppia [Nm];Velocità [rpm];{heading}", "A;1;9;20000")
+
+    assert f"What is column “{heading}”?" in asked(table)
+
+
+@pytest.mark.parametrize(
+    ("head", "names"),
+    [
+        ("Achse;Phase", "hoch runter"),
+        ("Achse;Schritt", "hoch runter"),
+        ("Axis;Step", "up 2"),
+        ("Axe;Étape", "montée descente"),
+        ("Asse;Fase", "salita discesa"),
+        ("Axis;Name", "up down"),
+    ],
+)
+def test_names_of_the_phases_of_an_axis_are_kept(head: str, names: str) -> None:
+    rows = [f"A;{name};1;10;1" for name in names.split()]
+
+    assert read(f"{head};Torque [Nm];Speed [rpm];Time [s]", *rows).axes[0]["name"] == names.split()
+
+
+def test_numbers_below_phase_name_none_and_a_column_called_so_comes_first() -> None:
+    numbered = read("Axis;Phase;Torque;Speed;Duration", "A;1;1;10;1", "A;2;2;20;2")
+    both = read("Axis;Phase;Phase name;Torque;Speed;Duration", "A;a1;up;1;10;1", "A;a2;down;2;20;2")
+
+    assert "name" not in numbered.axes[0]
+    assert both.axes[0]["name"] == ["up", "down"]

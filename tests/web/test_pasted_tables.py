@@ -84,5 +84,6 @@ def of_table(client: TestClient, case: Case) -> str:
     return found[1]
 
 
-def test_there_are_at_least_150_tables() -> None:
+def test_there_are_at_least_150_tables_and_twelve_each_in_french_and_italian() -> None:
     assert len(CASES) >= 150
+    assert min(len(GROUPS[language]) for language in ("french", "italian")) >= 12

@@ -14,7 +14,7 @@ from hpn.tables.bodies import Body, body_of
 from hpn.tables.by_size import numbers_by_size
 from hpn.tables.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Merged, entry, is_blank, is_number
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
-from hpn.tables.headings import is_stop
+from hpn.tables.headings import is_of_phase, is_stop
 from hpn.tables.heads import REQUIRED, left_out, skipped
 from hpn.tables.inputs import AXIS, NAME, PHASE, PHASE_ROLES, Inputs
 from hpn.tables.interpreter import Interpreter, Row, Series, unit_behind
@@ -25,6 +25,7 @@ from hpn.tables.table import Choice, Table
 from hpn.tables.times import ERROR, durations_of, in_plain, unrolled
 from hpn.words import spellings
 from hpn.words.patterns import Pattern
+from hpn.words.titles import LONGEST_NAME, is_title
 from hpn.words.wording import N_, Sentence, Value
 
 _BETWEEN = Pattern(r"[;/|\s]+", LONGEST_CELL)
@@ -40,7 +41,7 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
     """Reading of a table of cells; raises nothing, `problem` says why there is none."""
 
     def columns_of(body: Body) -> tuple[Column, ...]:
-        return settled(_named_apart(proposed(body, inputs)), body, inputs, choices, assumed)
+        return settled(_with_names(proposed(body, inputs), body), body, inputs, choices, assumed)
 
     try:
         body = body_of(grid, choices.scales)
@@ -51,13 +52,21 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
         return Table(problem=refused.sentence)
 
 
-def _named_apart(columns: list[Column]) -> list[Column]:
-    """Columns of which one headed `name` names the phases, where another names the axis."""
+def _with_names(columns: list[Column], body: Body) -> list[Column]:
+    """Columns of which one names the phases: headed `name` beside that of the axis, or texts below `Phase`."""
     names = [column for column in columns if column.role == AXIS]
-    own = [column for column in names if column.heading.casefold() == NAME.place]
-    if len(names) != 2 or len(own) != 1:
+    own = [column for column in names if column.heading.casefold() == NAME.place] if len(names) == 2 else []
+    if not own and not any(column.role == NAME.role for column in columns):
+        own = [column for column in columns if is_of_phase(column.heading) and _has_names(body, column.place)]
+    if len(own) != 1:
         return columns
-    return [replace(column, role=NAME.role) if column in own else column for column in columns]
+    return [replace(column, role=NAME.role, skipped=None) if column in own else column for column in columns]
+
+
+def _has_names(body: Body, place: int) -> bool:
+    """True for a column of texts that may be names of phases."""
+    cells = [row[place] for row in body.rows if not is_blank(row[place])]
+    return not all(map(is_number, cells)) and all(is_title(cell, LONGEST_NAME) for cell in cells)
 
 
 def _unmerged(body: Body, columns: Sequence[Column]) -> Body:

@@ -122,6 +122,8 @@ def _proposed(body: Body, place: int, inputs: Inputs) -> Column:
     cells = [row[place] for row in body.rows if not is_blank(row[place])]
     said = heading_over(headings)
     kind = inputs.role_over(headings, said) or said.kind
+    if inputs.has_axes and kind == "t" and said.codes == {"h"}:
+        kind = ""  # so many hours may be a phase or a required life
     if not said.name and not inputs.has_axes:
         kind = by_units(said.units)
     known = (*inputs.by_role, INDEX, SUM) if inputs.has_axes else inputs.by_role

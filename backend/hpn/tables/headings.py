@@ -6,7 +6,7 @@ from functools import lru_cache
 from re import IGNORECASE
 
 from hpn.tables.cells import TIME_FORMAT, is_blank, tidy
-from hpn.tables.shafts import is_of_motor, without_motor, without_output
+from hpn.tables.shafts import is_of_motor, without_index, without_motor, without_output
 from hpn.words import spellings, units
 from hpn.words.patterns import Pattern
 
@@ -24,26 +24,43 @@ LONGEST_WRITTEN = 1000
 """The same before blanks are taken out of it."""
 
 _EXACT = {"T": "T", "n": "n", "t": "t", "ω": "n", "Md": "T", "Δt": "t", "dt": "t", "FR": "FRi", "FA": "FAi"}
-_MEASURED = {"M": "T", "M2": "T", "T2": "T", "τ": "T", "n2": "n", "Velocity": "n", "velocity": "n"}
+_MEASURED = {
+    "M": "T",
+    "M2": "T",
+    "T2": "T",
+    "τ": "T",
+    "n2": "n",
+    "Velocity": "n",
+    "velocity": "n",
+    "Giri": "n",
+    "giri": "n",
+}
 """Names that mean a quantity only together with a unit of it."""
 
 _SYMBOLS = {**_EXACT, **_MEASURED, "Fr": "FRi", "Fa": "FAi", "t2": "t", "ω2": "n"}
 """Symbols that may stand behind a name, as in `Drehmoment T2 [Nm]`; those of the motor’s side are none."""
 
+_INSTANTS = (
+    "zeitpunkt; instant; timestamp; zeitstempel; uhrzeit; datetime; date time; endzeit; startzeit; end time; "
+    "start time; ende; end; start; beginn; bis; von; until; from; "
+    "horodatage; heure; date/heure; date heure; ora; orario; data/ora; data ora"
+)
+INSTANTS = set(_INSTANTS.split("; "))
+"""Names that mean a point in time, and never how long something lasts."""
+
 _WORDS = {
     "T": "torque; drehmoment; moment; lastmoment; abtriebsmoment; abtriebsdrehmoment; output torque; load torque; "
-    "t out; torque out; couple; coppia; momento; momento torcente; par; vridmoment; koppel",
+    "t out; torque out; couple; couple résistant; coppia; coppia resistente; momento; momento torcente; par; "
+    "vridmoment; koppel",
     "n": "speed; drehzahl; abtriebsdrehzahl; output speed; rotational speed; winkelgeschwindigkeit; angular velocity; "
     "angular speed; omega; n out; vitesse; vitesse de rotation; velocità; velocità di rotazione; velocidad; "
-    "velocidad de giro; varvtal; toerental",
+    "velocidad de giro; varvtal; toerental; vitesse angulaire; velocità angolare; numero di giri",
     "t": "duration; dauer; zeitdauer; phasendauer; time; zeit; durée; temps; durata; tempo; duración; tiempo; tid; "
-    "varaktighet; tijd; duur; delta t; zeitpunkt; instant; timestamp; endzeit; startzeit; end time; start time; ende; "
-    "end; start; beginn; bis; von; until; from; "
-    "zeitstempel; uhrzeit; datetime; date time",
+    "varaktighet; tijd; duur; delta t; " + _INSTANTS,
     "FRi": "radial; radial load; radial force; radialkraft; radiallast; fr; fri; f r; charge radiale; force radiale; "
-    "carico radiale; carga radial; fuerza radial; radiallast",
+    "carico radiale; carga radial; fuerza radial; radiallast; effort radial; forza radiale",
     "FAi": "axial; axial load; axial force; axialkraft; axiallast; fa; fai; f a; charge axiale; force axiale; "
-    "carico assiale; carga axial; fuerza axial",
+    "carico assiale; carga axial; fuerza axial; effort axial; forza assiale",
     "Tpk": "peak torque; maximum torque; max torque; torque peak; torque max; tpk; t pk; t max; tmax; m max; mmax; "
     "spitzenmoment; spitzendrehmoment; maximalmoment; maximaldrehmoment; maximales moment; maximales drehmoment; "
     "größtes moment; größtes drehmoment; max drehmoment; max moment; drehmoment max; moment max",
@@ -66,20 +83,6 @@ DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata"
     *("delta t", "δt", "dt")
 }
 """Names that mean how long something lasts, and never a point in time."""
-INSTANTS = {
-    "zeitpunkt",
-    "instant",
-    "timestamp",
-    *("zeitstempel", "uhrzeit", "datetime", "date time"),
-    "endzeit",
-    "startzeit",
-    "end time",
-    "start time",
-    "ende",
-    "end",
-    "start",
-} | {*("beginn", "bis", "von", "until", "from")}
-"""Names that mean a point in time, and never how long something lasts."""
 
 _LARGEST = {"max", "maximum", "maximal", "maximale", "maxi", "massima", "massimo", "peak", "spitze", "crête", "picco"}
 _EFFECTIVE = {"rms", "eff", "effective", "effektiv", "efficace"}
@@ -99,13 +102,18 @@ QUALIFIERS = {
 OF_NAMES = {"name", "phase name", "bezeichnung", "benennung", "phasenname", "nom", "nome", "nombre", "namn", "naam"}
 """Names of a column that names the phases, as any that numbers them may do."""
 
+OF_PHASES = {"phase", "step", "schritt", "segment", "abschnitt", "étape", "fase", "steg", "stap", "bewegung", "move"}
+"""Names of a column that numbers or names the phases of an axis, and never the axes."""
+
 OF_REMARKS = {"remark", "remarks", "comment", "note", "notes", "bemerkung", "bemerkungen", "anmerkung", "kommentar"}
 """Names of a column of texts that names nothing."""
 
 OF_LOAD = {"load", "last", "load cycle", "lastzyklus", "duty cycle", "cycle", "zyklus"}
 """Names above that of a quantity that change nothing of it."""
 
-ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"}
+ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"} | {
+    *("vitesse angulaire", "velocità angolare"),
+}
 """Names of a speed that is as likely in rad/s as in rpm."""
 
 _SUMS = Pattern(
@@ -173,9 +181,10 @@ def _heading_of(cell: str) -> Heading:
     if summed := _SUMS.fullmatch(folded) or _SUMS.fullmatch(" ".join(reversed(folded.rsplit(" ", 1)))):
         of = _kind(summed["rest"], "")
         return Heading(SUM if of == "t" or (not of and spellings.codes_for(unit, "time")) else "", unit)
-    of_motor = is_of_motor(name)
-    kind = meant = _kind(without_motor(name), unit) if of_motor else _kind(name, unit)
     codes = spellings.codes_for(unit)
+    bare = without_index(name) if codes else name
+    of_motor = bare != name or is_of_motor(name)
+    kind = meant = _kind(without_motor(bare), unit) if of_motor else _kind(name, unit)
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
         return Heading("", unit)
     kind, meant = (kind, "") if not of_motor or kind == "t" else ("", kind if kind in QUANTITIES else "")
@@ -325,7 +334,7 @@ def heading_over(texts: Sequence[str]) -> Over:
         name,
         measured,
         meant,
-        any(is_of_motor(parts_of(" ".join(text.split()))[0]) for text in names),
+        bool(meant) or any(is_of_motor(parts_of(" ".join(text.split()))[0]) for text in names),
         lasting=any(each.lasting for each in found),
         angular=any(each.angular for each in found),
         instant=any(each.instant for each in found),
@@ -352,6 +361,11 @@ def is_qualifier(cell: str) -> bool:
 def is_name(cell: str) -> bool:
     """True for a heading of names: of texts that say what each row is."""
     return len(cell) <= LONGEST and (_folded(cell) in OF_NAMES or heading_of(cell).kind == INDEX)
+
+
+def is_of_phase(cell: str) -> bool:
+    """True for a heading of numbers or names of phases."""
+    return len(cell) <= LONGEST and _folded(cell) in OF_PHASES
 
 
 def is_remark(cell: str) -> bool:

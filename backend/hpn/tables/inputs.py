@@ -17,18 +17,21 @@ from hpn.words.wording import N_, Named
 AXIS = "axis"
 
 FURTHER = {
-    AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name",
+    AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name, "
+    "axe, asse, eje",
     "pn": "phase name, name of the phase, phasenname, phasenbezeichnung",
-    "tp": "pause, pausenzeit, dwell",
-    "Tk": "emergency stop torque, e-stop torque, not-halt-moment, nothaltmoment, not-halt-drehmoment",
-    "Jm": "motor inertia, rotor inertia, motorträgheit, motorträgheitsmoment, rotorträgheit",
-    "bl": "backlash, max backlash, maximum backlash, spiel, verdrehspiel",
+    "tp": "pause, pausenzeit, dwell, pausa, temps de pause, durée de pause, tempo di pausa",
+    "Tk": "emergency stop torque, e-stop torque, not-halt-moment, nothaltmoment, not-halt-drehmoment, not-aus-moment, "
+    "couple d'arrêt d'urgence, coppia di emergenza, coppia di arresto di emergenza",
+    "Jm": "motor inertia, rotor inertia, motorträgheit, motorträgheitsmoment, rotorträgheit, "
+    "inertie moteur, inertie du moteur, inertie du rotor, inerzia motore, inerzia del motore, inerzia del rotore",
+    "bl": "backlash, max backlash, maximum backlash, spiel, verdrehspiel, jeu, jeu angulaire, gioco, gioco angolare",
     "Nk": "emergency stops, not-halt-vorgänge, anzahl not-halt",
-    "Lh": "gear life, lebensdauer getriebe",
-    "Lb": "bearing life, lagerlebensdauer",
-    "i": "ratio, ratios, übersetzung, übersetzungen",
+    "Lh": "gear life, lebensdauer getriebe, durée de vie du réducteur, durata del riduttore",
+    "Lb": "bearing life, lagerlebensdauer, lebensdauer lager, durée de vie du roulement, durata del cuscinetto",
+    "i": "ratio, ratios, übersetzung, übersetzungen, rapport de réduction, rapporto di riduzione",
     "size": "size, sizes, baugröße, baugrößen",
-    "ta": "ambient, umgebungstemperatur",
+    "ta": "ambient, umgebungstemperatur, température ambiante, temperatura ambiente",
     "fw": "betriebsfaktor",
 }
 """Further names by role. One that fits two inputs, such as “life” or “motor torque”, is in none: it is asked for."""

@@ -95,8 +95,8 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "rpm": Unit(
             N_("rpm"),
             "rpm",
-            "rpm r.p.m. 1/min /min U/min Umdr/min r/min rev/min revs/min Upm tr/min giri/min varv/min omw/min ot/min "
-            "turn/min turns/min min-1 U·min-1 r·min-1 rev·min-1 tr·min-1",
+            "rpm r.p.m. 1/min /min U/min Umdr/min r/min rev/min revs/min Upm tr/min tr/mn giri/min varv/min "
+            "omw/min ot/min turn/min turns/min min-1 U·min-1 r·min-1 rev·min-1 tr·min-1",
             shown=True,
         ),
         "krpm": Unit("krpm", "kilorpm", "krpm kU/min"),
