@@ -28,7 +28,7 @@ endif
 export UV_SYSTEM_CERTS ?= true
 export NODE_USE_SYSTEM_CA ?= 1
 
-.PHONY: run install assets package test soak mutants check bench screenshots browser office curl nginx pdfua messages lock licences sbom audit digests certificates restore clean
+.PHONY: run install assets package test soak mutants check bench screenshots browser office curl nginx java pdfua messages lock licences sbom audit digests certificates restore clean
 .DELETE_ON_ERROR:
 
 run: install
@@ -65,7 +65,7 @@ endif
 # Tests that are long by nature, in their long form: hundreds of kills, examples by the thousand, Lighthouse over all pages.
 # Nothing runs beside tests of waiting times.
 UNDER_LOAD := tests/reliability/test_load.py tests/reliability/test_loop.py tests/operations/test_peers.py
-soak: install browser office curl nginx pdfua
+soak: install browser office curl nginx java pdfua
 	@$(PARTS); \
 	part measured $(BIN)/pytest --soak $(MEASURED); \
 	part under-load $(BIN)/pytest --soak $(UNDER_LOAD); \
@@ -157,6 +157,13 @@ curl:
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
 	    && apt-get install -q -y --no-install-recommends curl && command -v curl; then exit 0; fi; \
 	echo "No curl found, and none could be installed" >&2; exit 1
+
+# Compile the generated clients in Java and Kotlin for `make soak`.
+java:
+	@command -v javac && command -v mvn && exit 0; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && apt-get update -q \
+	    && apt-get install -q -y --no-install-recommends default-jdk-headless maven && command -v mvn; then exit 0; fi; \
+	echo "No JDK and Maven found, and they could not be installed; install JDK 17 or newer and Maven" >&2; exit 1
 
 # An independent check of PDF/UA for `make soak`: veraPDF's library from Maven Central, where Java and Maven are at hand.
 pdfua:
