@@ -14,8 +14,17 @@ from hpn.words.wording import N_, MendableError, Sentence
 EXTRAS = {
     "serve": (
         *("aiosqlite", "alembic", "babel", "brotli", "fastapi", "httptools", "jinja2", "markupsafe", "openpyxl"),
-        *("orjson", "prometheus_client", "segno", "sqlalchemy", "starlette", "structlog", "uvicorn", "xlsxwriter"),
-        "zstandard",
+        *(
+            "orjson",
+            "prometheus_client",
+            "python_multipart",
+            "segno",
+            "sqlalchemy",
+            "starlette",
+            "structlog",
+            "uvicorn",
+        ),
+        *("xlsxwriter", "zstandard"),
     ),
     "report": ("segno", "typst"),
     "aas": ("basyx", "pyecma376_2"),

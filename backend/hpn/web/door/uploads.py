@@ -1,9 +1,11 @@
 """Forms that a browser posts, with or without files, within limits of size and time."""
 
-import re
-from collections.abc import Callable
-from typing import NamedTuple
+import logging
+from contextlib import suppress
+from typing import TYPE_CHECKING
 
+from python_multipart.exceptions import FormParserError
+from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.requests import Request
 
 from hpn.tables.files import text_of
@@ -12,7 +14,14 @@ from hpn.web.door.bodies import FORM, content_type_of, pairs_of, read_body
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 
+if TYPE_CHECKING:
+    from python_multipart.multipart import MultipartCallbacks
+
 MULTIPART = "multipart/form-data"
+MOST_PARTS, LONGEST_HEAD, LONGEST_NAME = 200, 2000, 100
+"""Parts of a form, bytes of a line of their heads, and of their names; of more no part is taken."""
+
+logging.getLogger("python_multipart").setLevel(logging.CRITICAL)  # it quotes what a stranger's form says
 
 
 async def read_fields(request: Request) -> dict[str, str]:
@@ -31,113 +40,47 @@ async def read_parts(request: Request, maximum_bytes: int = 0) -> dict[str, byte
     return dict(await compute(request, "pages", form_parts, request.headers["content-type"], body))
 
 
-_BOUNDARY = re.compile(r"""boundary="?([A-Za-z0-9'()+_,./:=? -]{1,70})""", re.IGNORECASE)
-_NAME = re.compile(rb';\s*name="([^"\r\n]{1,100})"', re.IGNORECASE)
-_FILE_NAME = re.compile(rb';\s*filename="([^"\r\n]{1,300})"', re.IGNORECASE)
-_TYPE = re.compile(rb"^content-type:\s*([^;\s]{1,100})", re.IGNORECASE | re.MULTILINE)
-MOST_PARTS = 200
-LONGEST_HEAD = 2000
-END_OF_HEAD = b"\r\n\r\n"
-
-
-class PartHead(NamedTuple):
-    """Name and file name of a part of a form, read from the lines before its content."""
-
-    name: str
-    file_name: str
-    content_type: str
-
-
-Write = Callable[[bytes], object]
-
-
-def _discard(content: bytes) -> None:
-    """Takes what belongs to no part."""
-
-
-class FormSplitter:
-    """Cuts a form as browsers write it (RFC 7578) into its parts while it arrives.
-
-    `begin` gets the head of each part that has a name, and gives what takes its content. Not with a library: those at
-    hand take seconds for a header or a nesting that no browser sends.
-    """
-
-    def __init__(self, content_type: str, begin: Callable[[PartHead], Write]) -> None:
-        boundary = _BOUNDARY.search(content_type[:LONGEST_HEAD])
-        self._delimiter = b"\r\n--" + boundary[1].strip().encode() if boundary else b""
-        self._begin = begin
-        self._rest = bytearray(b"\r\n")
-        self._write: Write | None = _discard  # None within a head
-        self._sections = 0
-        self.ended = False
-
-    def feed(self, piece: bytes) -> None:
-        """Take the next piece of the form."""
-        self._rest += piece
-        while self._delimiter and not self.ended and (self._content() if self._write else self._head()):
-            pass
-        if self.ended or not self._delimiter:
-            self._rest.clear()
-
-    def finish(self) -> None:
-        """Take what is left of a form whose end is missing."""
-        if self._write and not self.ended:
-            self._write(bytes(self._rest))
-
-    def _content(self) -> bool:
-        """Pass on content up to the next delimiter; whether there is one."""
-        assert self._write is not None
-        place = self._rest.find(self._delimiter)
-        if place < 0:
-            sure = max(len(self._rest) - len(self._delimiter) + 1, 0)
-            self._write(bytes(self._rest[:sure]))
-            del self._rest[:sure]
-            return False
-        self._write(bytes(self._rest[:place]))
-        self._next_section(place)
-        return True
-
-    def _next_section(self, place: int) -> None:
-        del self._rest[: place + len(self._delimiter)]
-        self._write = None
-        self._sections += 1
-        self.ended = self._sections > MOST_PARTS
-
-    def _head(self) -> bool:
-        """Read the head of a part; whether there is a whole one."""
-        end, place = self._rest.find(END_OF_HEAD), self._rest.find(self._delimiter)
-        self.ended = self._rest.startswith(b"--")
-        if self.ended or (end < 0 and place < 0 and len(self._rest) <= LONGEST_HEAD):
-            return False
-        if place >= 0 and (end < 0 or place < end):
-            self._next_section(place)
-            return True
-        head = _head_of(bytes(self._rest[: max(end, 0)]))
-        self._write = self._begin(head) if head else _discard
-        del self._rest[: end + len(END_OF_HEAD) if end >= 0 else 0]
-        return True
-
-
-def _head_of(text: bytes) -> PartHead | None:
-    name, *others = (pattern.search(text[:LONGEST_HEAD]) for pattern in (_NAME, _FILE_NAME, _TYPE))
-    if name is None:
-        return None
-    file_name, content_type = (found[1].decode(errors="replace") if found else "" for found in others)
-    return PartHead(name[1].decode(errors="replace"), file_name, content_type.lower())
-
-
 def form_parts(content_type: str, body: bytes) -> list[tuple[str, bytes]]:
-    """Name and content of each part of a form; none where it isn't one."""
-    parts: list[tuple[str, bytearray]] = []
+    """Name and content of each part of a form (RFC 7578), up to where it is none."""
+    parts = _Parts()
+    _, options = parse_options_header(content_type[:LONGEST_HEAD])
+    if boundary := options.get(b"boundary"):
+        with suppress(FormParserError):
+            MultipartParser(boundary, parts.callbacks, max_header_size=LONGEST_HEAD).write(body)
+    return [(name, bytes(content)) for name, content in parts.found if name]
 
-    def begin(head: PartHead) -> Write:
-        parts.append((head.name, bytearray()))
-        return parts[-1][1].extend
 
-    splitter = FormSplitter(content_type, begin)
-    splitter.feed(body)
-    splitter.finish()
-    return [(name, bytes(content)) for name, content in parts]
+class _Parts:
+    """Parts of a form, as its parser finds them."""
+
+    def __init__(self) -> None:
+        self.found: list[tuple[str, bytearray]] = []
+        self._key, self._value = b"", b""
+        self.callbacks: MultipartCallbacks = {
+            "on_part_begin": self._begin,
+            "on_header_field": self._read_key,
+            "on_header_value": self._read_value,
+            "on_header_end": self._end_header,
+            "on_part_data": lambda data, start, end: self.found[-1][1].extend(data[start:end]),
+        }
+
+    def _begin(self) -> None:
+        if len(self.found) == MOST_PARTS:
+            raise FormParserError("too many parts")
+        self.found.append(("", bytearray()))
+
+    def _read_key(self, data: bytes, start: int, end: int) -> None:
+        self._key += data[start:end]
+
+    def _read_value(self, data: bytes, start: int, end: int) -> None:
+        self._value += data[start:end]
+
+    def _end_header(self) -> None:
+        if self._key.lower() == b"content-disposition":
+            name = parse_options_header(self._value)[1].get(b"name", b"")
+            if len(name) <= LONGEST_NAME:
+                self.found[-1] = (name.decode(errors="replace"), self.found[-1][1])
+        self._key, self._value = b"", b""
 
 
 def decoded(content: bytes) -> str:
