@@ -10,7 +10,7 @@ from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.order import Order
-from hpn.fleet.run import size_fleet
+from hpn.fleet.run import Use, size_fleet
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.fleet.page import GERMAN, fields_of, post
@@ -21,23 +21,21 @@ Size = Callable[..., list[Row]]
 
 @pytest.fixture
 def size(catalogue: Catalogue, tmp_path: Path) -> Size:
-    """Sizes rows: gives the answers. Files lie in the test's folder: `in`, `beside`, `out`, `rejected.ndjson`."""
+    """Sizes rows: gives the answers. Files lie in the test's folder: `in`, `out`, `rejected.parquet`."""
 
     def run(
         rows: list[Row] | str | bytes,
-        suffix: str = ".ndjson",
+        suffix: str = ".parquet",
         *,
-        beside: list[Row] | None = None,
         candidates: Path | None = None,
+        use: Use = lambda answers: None,
     ) -> list[Row]:
-        order = Order(tmp_path / f"in{suffix}", tmp_path / f"out{suffix}", rejected=tmp_path / "rejected.ndjson")
+        order = Order(tmp_path / f"in{suffix}", tmp_path / f"out{suffix}", rejected=tmp_path / "rejected.parquet")
         if isinstance(rows, str | bytes):
             order.axes.write_bytes(rows.encode() if isinstance(rows, str) else rows)
         else:
             write(order.axes, rows)
-        if beside is not None:
-            order = replace(order, requirements=write(tmp_path / f"beside{suffix}", beside))
-        size_fleet(replace(order, candidates=candidates), catalogue)
+        size_fleet(replace(order, candidates=candidates), catalogue, use=use)
         return read(order.answers)
 
     return run

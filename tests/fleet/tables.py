@@ -147,36 +147,35 @@ def _type(name: str) -> pa.DataType | None:
     return LISTS.get(name) or (pa.string() if name in TEXTS else pa.float64())
 
 
-def in_long_form(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
-    """Rows of phases, and the rows beside them; a list that is shorter than another ends in nulls."""
-    phases, beside = [], []
+def in_long_form(rows: Sequence[Row], *, repeated: bool = False) -> list[Row]:
+    """Rows of phases, with the other inputs of an axis in its first row or in all of them; a list that is shorter than
+    another ends in nulls."""
+    found = []
     for row in rows:
         lists = {name: row[name] for name in PHASE if row.get(name) is not None}
+        others = {name: value for name, value in row.items() if name not in PHASE}
         for index in range(max(map(len, lists.values()))):
             cells = {name: values[index] for name, values in lists.items() if index < len(values)}
-            phases.append({"axis": row["axis"], **cells})
-        beside.append({name: value for name, value in row.items() if name not in PHASE})
-    return phases, beside
+            found.append((others if repeated or not index else {"axis": row["axis"]}) | cells)
+    return found
 
 
 def write(path: Path, rows: Sequence[Row], *, unit_rows: int = 1000) -> Path:
     """Rows in a file, in the format of its suffix; units are so many rows where the format has such."""
     is_long = not any(isinstance(row.get("torque_Nm"), list) for row in rows)
-    if path.suffix in (".parquet", ".arrow"):
+    if path.suffix != ".csv":
         table = _long_table(rows) if is_long else table_of(rows)
         if path.suffix == ".parquet":
             pq.write_table(table, path, row_group_size=unit_rows)
         else:
             with pa.ipc.new_file(str(path), table.schema) as file:
                 file.write_table(table, max_chunksize=unit_rows)
-    elif path.suffix == ".csv":
+    else:
         names = list(dict.fromkeys(name for row in rows for name in row))
         with path.open("w", newline="") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(names)
             writer.writerows([_cell(row.get(name)) for name in names] for row in rows)
-    else:
-        path.write_text("".join(json.dumps(row) + "\n" for row in rows))
     return path
 
 
@@ -201,16 +200,14 @@ def read(path: Path) -> list[Row]:
         rows: list[Row] = pq.read_table(path).to_pylist()
     elif path.suffix == ".arrow":
         rows = pa.ipc.open_file(str(path)).read_all().to_pylist()
-    elif path.suffix == ".csv":
-        rows = pacsv.read_csv(path, convert_options=pacsv.ConvertOptions(strings_can_be_null=True)).to_pylist()
     else:
-        rows = [json.loads(line) for line in path.read_text().splitlines()]
+        rows = pacsv.read_csv(path, convert_options=pacsv.ConvertOptions(strings_can_be_null=True)).to_pylist()
     return rows
 
 
 def faults(folder: Path) -> list[tuple[Any, str, str]]:
     """Rows of the rejected."""
-    return [(row["axis"], row["column"], row["reason"]) for row in read(folder / "rejected.ndjson")]
+    return [(row["axis"], row["column"], row["reason"]) for row in read(folder / "rejected.parquet")]
 
 
 def phases(*axes: str) -> str:

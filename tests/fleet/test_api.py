@@ -34,7 +34,6 @@ TYPES = {
     ".parquet": "application/vnd.apache.parquet",
     ".arrow": "application/vnd.apache.arrow.file",
     ".csv": "text/csv",
-    ".ndjson": "application/x-ndjson",
 }
 CSV = {"Content-Type": "text/csv"}
 HEADINGS = b"axis,torque_Nm,speed_rpm,duration_s\n"
@@ -76,7 +75,6 @@ CASES: list[tuple[str, str, fleets.Kind]] = [
     (".parquet", "long", "answers"),
     (".arrow", "list", "candidates"),
     (".csv", "long", "rejected"),
-    (".ndjson", "list", "answers"),
 ]
 OTHER_FORM = {"long": "list", "list": "long"}
 
@@ -89,17 +87,10 @@ def test_an_answer_is_what_the_command_writes_to_the_byte(
     suffix: str, form: str, give: fleets.Kind, rows: list[Row], service: Service, catalogue: Catalogue, tmp_path: Path
 ) -> None:
     files = {kind: tmp_path / f"{kind}{suffix}" for kind in ("answers", "rejected", "candidates")}
-    if form == "long":
-        phases, beside = in_long_form(rows)
-        table, axes = write(tmp_path / f"phases{suffix}", phases), write(tmp_path / f"beside{suffix}", beside)
-        sent: dict[str, Any] = {
-            "files": {"input": (table.name, table.read_bytes()), "axes": ("x", axes.read_bytes(), TYPES[suffix])}
-        }
-    else:
-        table, axes = write(tmp_path / f"axes{suffix}", rows), None
-        sent = {"content": table.read_bytes(), "headers": {"Content-Type": TYPES[suffix]}}
-    order = Order(table, files["answers"], axes, candidates=files["candidates"], rejected=files["rejected"])
+    table = write(tmp_path / f"axes{suffix}", in_long_form(rows) if form == "long" else rows)
+    order = Order(table, files["answers"], candidates=files["candidates"], rejected=files["rejected"])
     size_fleet(order, catalogue)
+    sent: dict[str, Any] = {"content": table.read_bytes(), "headers": {"Content-Type": TYPES[suffix]}}
 
     answer = service.client.post(PATH, params={"give": give}, **sent)
 
@@ -134,33 +125,21 @@ def spoiled_at(content: bytes, place: int) -> bytes:
     return content[:place] + bytes(255 - byte for byte in content[place : place + 60]) + content[place + 60 :]
 
 
-def part(name: str, content: bytes, file: str = "axes.csv") -> bytes:
-    """A part of a form."""
-    return b'--b\r\nContent-Disposition: form-data; name="%s"; filename="%s"\r\n\r\n%s\r\n' % (
-        name.encode(),
-        file.encode(),
-        content,
-    )
-
-
-END = b"--b--\r\n"
-FORM = {"Content-Type": "multipart/form-data; boundary=b"}
-PARQUET, ARROW, NDJSON = ({"Content-Type": TYPES[suffix]} for suffix in (".parquet", ".arrow", ".ndjson"))
+PARQUET, ARROW = ({"Content-Type": TYPES[suffix]} for suffix in (".parquet", ".arrow"))
+FORM, LINES = (
+    {"Content-Type": "multipart/form-data; boundary=b"},
+    {"Content-Type": "application/x-ndjson; charset=utf-8"},
+)
 REFUSED: list[tuple[str, bytes, dict[str, str], int, str]] = [
     ("empty", b"", CSV, 422, "input: is empty"),
     ("no table", b"\x00\xff" * 50, CSV, 422, "input: column axis is missing"),
     ("UTF-16", "axis\ttorque_Nm\n".encode("utf-16"), CSV, 422, "input: is UTF-16, where UTF-8 belongs"),
     ("truncated Parquet", parquet()[:-9], PARQUET, 422, "input: can’t be read as parquet"),
     ("CSV as Arrow", ONE_AXIS, ARROW, 422, "input: can’t be read as arrow"),
-    ("no content type", ONE_AXIS, {}, 415, "or multipart/form-data"),
+    ("no content type", ONE_AXIS, {}, 415, "application/gzip"),
     ("JSON", b"{}", {"Content-Type": "application/json"}, 415, "text/csv"),
-    ("form without a boundary", part("input", ONE_AXIS), {"Content-Type": "multipart/form-data"}, 400, "boundary"),
-    ("form without an end", part("input", ONE_AXIS), FORM, 400, "has no end"),
-    ("form without input", part("axes", ONE_AXIS) + END, FORM, 422, "needs a part input"),
-    ("form with another part", part("other", ONE_AXIS) + END, FORM, 422, "'other' is one more"),
-    ("form with two inputs", part("input", ONE_AXIS) * 2 + END, FORM, 422, "'input' is one more"),
-    ("form with a workbook", part("input", b"x", "axes.xlsx") + END, FORM, 415, "part input needs a file name"),
-    ("form whose axes are none", part("input", ONE_AXIS) + part("axes", b"x") + END, FORM, 422, "axes: column axis is"),
+    ("form", ONE_AXIS, FORM, 400, "is gone: one table has all columns, in long form in the first row of an axis"),
+    ("lines", ONE_AXIS, LINES, 400, "tables in lines of JSON are gone: use Parquet, Arrow or CSV"),
     # Errors that only the command finds
     (
         "unknown column",
@@ -171,18 +150,11 @@ REFUSED: list[tuple[str, bytes, dict[str, str], int, str]] = [
     ),
     ("wrong type", parquet(speed_rpm=["fast"]), PARQUET, 422, "input: column speed_rpm is string"),
     ("spoiled Parquet", spoiled_at(parquet(), 20), PARQUET, 422, "input: "),
-    (
-        "list form with axes",
-        part("input", ONE_AXIS) + part("axes", b"axis\n1\n") + END,
-        FORM,
-        422,
-        "input: has its axes",
-    ),
 ]
 
 
-IN_SOAK = ("wrong type", "list form with axes")
-"""Refusals of the command, each of which takes a second of start, beside two others of which the short form sees."""
+IN_SOAK = ("wrong type",)
+"""A refusal of the command, which takes a second of start, beside two others of which the short form sees."""
 
 
 @pytest.mark.parametrize(
@@ -295,7 +267,7 @@ def test_where_too_many_wait_the_next_is_a_503(bounded: Callable[..., TestClient
 
 
 def test_the_memory_of_the_service_does_not_grow_with_the_body(service: Service) -> None:
-    """100 MB of lines, and of a form, that are refused when they have arrived."""
+    """100 MB of lines that are refused when they have arrived."""
 
     def peak() -> int:
         status = Path(f"/proc/{service.process.pid}/status").read_text()
@@ -306,10 +278,8 @@ def test_the_memory_of_the_service_does_not_grow_with_the_body(service: Service)
     before = peak()
 
     table = service.client.post(PATH, content=iter(lines), headers=CSV)
-    form = service.client.post(PATH, content=iter([part("input", b"")[:-2], *lines, b"\r\n" + END]), headers=FORM)
 
-    assert (table.status_code, form.status_code) == (422, 422)
-    assert "column axis is missing" in form.text
+    assert (table.status_code, "column axis is missing" in table.text) == (422, True)
     assert peak() - before < 20
     assert "libarrow" not in Path(f"/proc/{service.process.pid}/maps").read_text()
 

@@ -47,7 +47,7 @@ def in_parquet(table: pa.Table) -> bytes:
     return content.getvalue()
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
 def test_every_form_of_a_centre_is_read_in_every_format(suffix: str, size: Size, catalogue: Catalogue) -> None:
     applications = axes(CENTRES * 5)
     rows = [row_of(f"a{place}", application) for place, application in enumerate(applications)]

@@ -1,7 +1,6 @@
 """A fleet gets what `select` gives each of its axes, bit for bit: every form, format and engine."""
 
 import random
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -94,13 +93,11 @@ def fleet(soak: bool, tmp_path_factory: pytest.TempPathFactory) -> Fleet:
 
 
 @pytest.mark.parametrize("form", ["list", "long"])
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
 def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Fleet, tmp_path: Path) -> None:
-    order = Order(tmp_path / f"in{suffix}", tmp_path / f"out{suffix}", rejected=tmp_path / "rejected.ndjson")
+    order = Order(tmp_path / f"in{suffix}", tmp_path / f"out{suffix}", rejected=tmp_path / "rejected.parquet")
     if form == "long":
-        phases, beside = in_long_form(fleet.rows)
-        write(order.axes, phases)
-        order = replace(order, requirements=write(tmp_path / f"beside{suffix}", beside))
+        write(order.axes, in_long_form(fleet.rows, repeated=suffix == ".csv"))
     else:
         write(order.axes, fleet.rows)
 
@@ -119,7 +116,7 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
         else:
             assert row == wanted
     refused = {axis for axis, wanted in fleet.wanted.items() if wanted["error"]}
-    assert {row["axis"] for row in read(tmp_path / "rejected.ndjson")} == refused
+    assert {row["axis"] for row in read(tmp_path / "rejected.parquet")} == refused
 
 
 @pytest.mark.parametrize(
@@ -139,7 +136,7 @@ def test_a_motor_by_name_is_refused_as_select_refuses_it(wrong: Row, said: str, 
     row = row_of("a", at_random(random.Random(3))) | {"requirements.load_inertia_kgm2": 0.01}
     row = {name: value for name, value in row.items() if not name.startswith("requirements.motor.")}
     named = row | {"requirements.motor.designation": "M 40"}
-    order = Order(write(tmp_path / "in.ndjson", [named, named | wrong | {"axis": "b"}]), tmp_path / "out.ndjson")
+    order = Order(write(tmp_path / "in.parquet", [named, named | wrong | {"axis": "b"}]), tmp_path / "out.parquet")
 
     size_fleet(order, fleet.catalogue)
 

@@ -1,5 +1,6 @@
 """Files as other tools write them: other suffixes of the same formats, streams, and columns that no application has."""
 
+import csv
 import gzip
 import io
 import json
@@ -14,10 +15,11 @@ from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
 from hpn.cli import main
-from hpn.fleet import lines
+from hpn.fleet import csv_tables
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.run import size_fleet
+from hpn.web.api.fleet import MEDIA_TYPES, READ_TYPES
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.fleet.tables import Row, read, table_of, write
@@ -54,9 +56,7 @@ def content(suffix: str, folder: Path) -> bytes:
     if suffix == ".feather":
         feather.write_feather(table, str(folder / "f.feather"), compression="lz4")
         return (folder / "f.feather").read_bytes()
-    if suffix == ".csv.gz":
-        return gzip.compress(write(folder / "f.csv", ROWS).read_bytes())
-    return write(folder / "f.ndjson", ROWS).read_bytes()
+    return gzip.compress(write(folder / "f.csv", ROWS).read_bytes())
 
 
 ANSWERED_IN = {
@@ -64,7 +64,6 @@ ANSWERED_IN = {
     "stream.arrow": ".arrow",
     ".feather": ".arrow",
     ".csv.gz": ".csv",
-    ".jsonl": ".ndjson",
 }
 
 
@@ -72,31 +71,32 @@ ANSWERED_IN = {
 def test_other_suffixes_and_streams_are_read(suffix: str, tmp_path: Path, catalogue: Catalogue) -> None:
     path = tmp_path / f"in{suffix}"
     path.write_bytes(content(suffix, tmp_path))
-    size_fleet(Order(write(tmp_path / "plain.ndjson", ROWS), tmp_path / "plain.out.ndjson"), catalogue)
-    size_fleet(Order(path, tmp_path / "out.ndjson"), catalogue)
-    assert read(tmp_path / "out.ndjson") == read(tmp_path / "plain.out.ndjson")
+    size_fleet(Order(write(tmp_path / "plain.parquet", ROWS), tmp_path / "plain.out.parquet"), catalogue)
+    size_fleet(Order(path, tmp_path / "out.parquet"), catalogue)
+    assert read(tmp_path / "out.parquet") == read(tmp_path / "plain.out.parquet")
 
 
 @pytest.mark.parametrize("suffix", ANSWERED_IN)
 def test_rest_answers_in_the_format_that_is_written(suffix: str, client: TestClient, tmp_path: Path) -> None:
-    given = {"input": (f"in{suffix}", content(suffix, tmp_path))}
-    response = client.post("/api/v1/fleet", files=given)
+    kinds = {".arrows": READ_TYPES[".arrows"], ".csv.gz": READ_TYPES[".csv.gz"]}
+    headers = {"Content-Type": kinds.get(suffix, MEDIA_TYPES[".arrow"])}
+    response = client.post("/api/v1/fleet", content=content(suffix, tmp_path), headers=headers)
     assert response.status_code == 200, response.text
     path = tmp_path / f"out{ANSWERED_IN[suffix]}"
     path.write_bytes(response.content)
     assert [row["axis"] for row in read(path)] == ["a0", "a1", "a2", "a3"]
 
 
-@pytest.mark.parametrize("suffix", [".feather", ".jsonl", ".arrows", ".csv.gz"])
+@pytest.mark.parametrize("suffix", [".feather", ".arrows", ".csv.gz"])
 def test_these_are_not_written(suffix: str, tmp_path: Path, catalogue: Catalogue) -> None:
-    with pytest.raises(FleetError, match=r"the suffix must be one of \.parquet, \.arrow, \.csv, \.ndjson$"):
-        order = Order(write(tmp_path / "in.ndjson", ROWS), tmp_path / f"out{suffix}")
+    with pytest.raises(FleetError, match=r"the suffix must be one of \.parquet, \.arrow, \.csv$"):
+        order = Order(write(tmp_path / "in.parquet", ROWS), tmp_path / f"out{suffix}")
         size_fleet(order, catalogue)
 
 
 @pytest.mark.parametrize("suffix", [".csv.gz", ".arrows"])
 def test_neither_gzip_nor_a_stream_is_held(suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lines, "BLOCK_BYTES", 100)
+    monkeypatch.setattr(csv_tables, "BLOCK_BYTES", 100)
     path = tmp_path / f"in{suffix}"
     path.write_bytes(content(suffix, tmp_path))
     assert [batch.rows.num_rows for batch in open_axes(path).batches()] in ([1] * 4, [2] * 2)
@@ -135,13 +135,13 @@ def test_an_index_of_pandas_is_ignored_and_said_so(
 ) -> None:
     path = tmp_path / f"in{suffix}"
     with_index(suffix, path)
-    assert main(["fleet", str(path), str(tmp_path / "out.ndjson")]) == 0
+    assert main(["fleet", str(path), str(tmp_path / "out.parquet")]) == 0
     assert f"column {name!r} is an index that pandas wrote, and ignored" in capsys.readouterr().err
-    assert [row["axis"] for row in read(tmp_path / "out.ndjson")] == ["a0", "a1", "a2", "a3"]
-    assert not any(row["error"] for row in read(tmp_path / "out.ndjson"))
+    assert [row["axis"] for row in read(tmp_path / "out.parquet")] == ["a0", "a1", "a2", "a3"]
+    assert not any(row["error"] for row in read(tmp_path / "out.parquet"))
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
 def test_a_column_that_no_application_has_is_refused_but_for_ignore(
     suffix: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -155,28 +155,28 @@ def test_a_column_that_no_application_has_is_refused_but_for_ignore(
             feather.write_feather(table, str(path), compression="uncompressed")
     else:
         write(path, rows)
-    call = ["fleet", str(path), str(tmp_path / "out.ndjson")]
+    call = ["fleet", str(path), str(tmp_path / "out.parquet")]
     assert main(call) == 2
     assert "column 'machine' is unknown" in capsys.readouterr().err
     assert main([*call, "--ignore", "machine", "note"]) == 0
-    assert not any(row["error"] for row in read(tmp_path / "out.ndjson"))
+    assert not any(row["error"] for row in read(tmp_path / "out.parquet"))
 
 
-def test_rest_ignores_by_its_query(client: TestClient) -> None:
-    body = "".join(json.dumps({**row, "machine": "-press", "note": [1]}) + "\n" for row in ROWS)
-    headers = {"Content-Type": "application/x-ndjson"}
+def test_rest_ignores_by_its_query(client: TestClient, tmp_path: Path) -> None:
+    body = write(tmp_path / "in.csv", [{**row, "machine": "-press", "note": [1]} for row in ROWS]).read_bytes()
+    headers = {"Content-Type": "text/csv"}
     refused = client.post("/api/v1/fleet", content=body, headers=headers)
     taken = client.post("/api/v1/fleet?ignore=machine&ignore=note", content=body, headers=headers)
     assert refused.status_code == 422
     assert "column 'machine' is unknown" in refused.json()["detail"]
     assert taken.status_code == 200, taken.text
-    assert [json.loads(line)["error"] for line in taken.text.splitlines()] == [None] * 4
+    assert [row["error"] for row in csv.DictReader(taken.text.splitlines())] == [""] * 4
 
 
 def test_rest_names_an_index_that_it_has_ignored(client: TestClient, tmp_path: Path) -> None:
     with_index(".parquet", tmp_path / "in.parquet")
-    given = {"input": ("in.parquet", (tmp_path / "in.parquet").read_bytes())}
-    answer = client.post("/api/v1/fleet", files=given)
+    kinds = [{"Content-Type": MEDIA_TYPES[suffix]} for suffix in (".parquet", ".csv")]
+    answer = client.post("/api/v1/fleet", content=(tmp_path / "in.parquet").read_bytes(), headers=kinds[0])
     assert (answer.status_code, answer.headers["HPN-Ignored-Columns"]) == (200, '"__index_level_0__"')
-    plain = client.post("/api/v1/fleet", files={"input": ("in.csv", write(tmp_path / "in.csv", ROWS).read_bytes())})
+    plain = client.post("/api/v1/fleet", content=write(tmp_path / "in.csv", ROWS).read_bytes(), headers=kinds[1])
     assert (plain.status_code, "HPN-Ignored-Columns" in plain.headers) == (200, False)

@@ -3,7 +3,6 @@
 import csv
 import gzip
 import io
-import json
 import re
 from html import unescape
 from pathlib import Path
@@ -18,23 +17,19 @@ from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from hpn.application import Application
-from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
-from hpn.fleet import listing
-from hpn.fleet.listing import as_parquet, kept_listing_of
-from hpn.fleet.order import Order
-from hpn.fleet.run import size_fleet
+from hpn.fleet.faults import reasons_of
+from hpn.fleet.machine import as_parquet
+from hpn.fleet.machine import table_of as table_of_kept
 from hpn.tables.files import NO_TEXT
 from hpn.tables.reading import Reading, reading_of
-from hpn.web.door.problems import Problem
 from hpn.web.form.link_writer import to_link
-from hpn.web.pages import fleet_result
 from hpn.web.pages.fleet_files import file_of
 from hpn.web.pages.fleet_upload import WANTED
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 from tests.fleet.page import GERMAN, HEAVY, HUB, fields_of, post
-from tests.fleet.tables import in_long_form, row_of, table_of, write
+from tests.fleet.tables import REQUIRED, in_long_form, row_of, table_of, write
 from tests.fuzz.costly import made
 from tests.state import state_of
 
@@ -163,13 +158,13 @@ HOSTILE = [
 def test_no_cell_of_the_file_for_excel_begins_a_formula_and_the_workbook_comes_first(
     client: TestClient, tmp_path: Path
 ) -> None:
-    table = write(tmp_path / "axes.ndjson", [row_of(name, HUB) for name in HOSTILE]).read_bytes()
+    table = write(tmp_path / "axes.parquet", [row_of(name, HUB) for name in HOSTILE]).read_bytes()
     place = post(client, table).headers["location"]
 
     csv_rows = list(csv.reader(io.StringIO(client.get(f"{place}/axes.csv").content.decode(), newline="")))
     sheet = openpyxl.load_workbook(io.BytesIO(client.get(f"{place}/axes.xlsx").content)).active
     typed = pq.read_table(io.BytesIO(client.get(f"{place}/axes.parquet").content))
-    rest = client.post("/api/v1/fleet", content=table, headers={"Content-Type": "application/x-ndjson"})
+    rest = client.post("/api/v1/fleet", content=table, headers={"Content-Type": "application/vnd.apache.parquet"})
 
     harmless = [f"'{name}" for name in HOSTILE[:6]] + HOSTILE[6:]
     assert [row[0] for row in csv_rows[1:]] == harmless
@@ -177,7 +172,7 @@ def test_no_cell_of_the_file_for_excel_begins_a_formula_and_the_workbook_comes_f
     cells = [row[0] for row in sheet.iter_rows(min_row=2)]
     assert {cell.data_type for cell in cells} == {"s"}
     assert [str(cell.value).replace("_x000D_", "\r") for cell in cells] == HOSTILE
-    assert typed["axis"].to_pylist() == [json.loads(line)["axis"] for line in rest.text.splitlines()] == HOSTILE
+    assert typed["axis"].to_pylist() == pq.read_table(io.BytesIO(rest.content))["axis"].to_pylist() == HOSTILE
     assert re.findall(r'href="[^"]*/axes\.(\w+)"', client.get(place).text) == ["xlsx", "csv", "parquet"]
 
 
@@ -256,10 +251,11 @@ def test_a_table_that_is_sent_to_the_older_address_arrives_whole(client: TestCli
 
 
 @pytest.mark.parametrize("form", ["list", "long"])
-@pytest.mark.parametrize("suffix", [".csv", ".ndjson", ".parquet", ".arrow"])
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".arrow"])
 def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, form: str) -> None:
     rows = [row_of("one", HUB), row_of("two", HEAVY)]
-    file = write(tmp_path / f"axes{suffix}", rows if form == "list" else in_long_form(rows)[0])
+    phases = [{name: row[name] for name in ("axis", *REQUIRED)} for row in rows]
+    file = write(tmp_path / f"axes{suffix}", rows if form == "list" else in_long_form(phases))
 
     assert reading_of(file.read_bytes(), WANTED) == Reading(suffix=suffix)
 
@@ -273,8 +269,6 @@ def as_written_elsewhere(kind: str, folder: Path) -> bytes:
     elif kind == ".arrows":
         with pa.ipc.new_stream(str(path), table.schema) as stream:
             stream.write_table(table, max_chunksize=1)
-    elif kind == ".jsonl":
-        path.write_text("".join(json.dumps(row) + "\n" for row in rows))
     elif kind == ".csv.gz":
         path.write_bytes(gzip.compress(write(folder / "axes.csv", rows).read_bytes()))
     elif kind == "CSV with an index":
@@ -284,9 +278,7 @@ def as_written_elsewhere(kind: str, folder: Path) -> bytes:
     return path.read_bytes()
 
 
-@pytest.mark.parametrize(
-    "kind", [".feather", ".arrows", ".jsonl", ".csv.gz", "CSV with an index", "Parquet with an index"]
-)
+@pytest.mark.parametrize("kind", [".feather", ".arrows", ".csv.gz", "CSV with an index", "Parquet with an index"])
 def test_tables_that_other_tools_write_are_sized_at_once(kind: str, client: TestClient, tmp_path: Path) -> None:
     sized = post(client, as_written_elsewhere(kind, tmp_path))
 
@@ -315,11 +307,10 @@ def test_gzip_and_streams_with_other_headings_are_read(kind: str, tmp_path: Path
 @pytest.mark.parametrize(
     "content",
     [
-        gzip.compress(b'{"axis": 1, "torque_Nm": [1]}\n'),
         gzip.compress(gzip.compress(b"axis")),
         b"\x1f\x8bno gzip at all",
     ],
-    ids=["lines of JSON", "gzip in gzip", "no gzip"],
+    ids=["gzip in gzip", "no gzip"],
 )
 def test_gzip_without_a_table_is_said(content: bytes) -> None:
     table = reading_of(content, WANTED).table
@@ -344,17 +335,12 @@ def test_names_of_phases_reach_the_link_of_their_axis(client: TestClient) -> Non
     assert "n=250&t=1&pn=hoch&T=32&n=500&t=2&pn=runter" in unescape(client.get(sized.headers["location"]).text)
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".ndjson"])
-def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Path, suffix: str) -> None:
+def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Path) -> None:
     exact = 0.1 + 0.2
     row = {"Antrieb": "A", "Moment Nm": exact, "Drehzahl rpm": 1234.567, "Zeitdauer s": 1e-3}
-    file = tmp_path / f"axes{suffix}"
-    if suffix == ".parquet":
-        pq.write_table(pa.Table.from_pylist([row]), file)
-    else:
-        file.write_text(json.dumps(row))
+    pq.write_table(pa.Table.from_pylist([row]), tmp_path / "axes.parquet")
 
-    table = reading_of(file.read_bytes(), WANTED).table
+    table = reading_of((tmp_path / "axes.parquet").read_bytes(), WANTED).table
 
     assert table is not None
     assert table.axes == ({"axis": "A", "torque_Nm": [exact], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
@@ -366,7 +352,8 @@ def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Pa
         (b"", 422, "choose a file"),
         (b"PAR1 but not really", 422, "can’t be read as Parquet"),
         (b"\xd0\xcf\x11\xe0 old", 422, "old format"),
-        (b'{"axis": 1, "torque_Nm": [1], "speed_rpm": [2], "duration_s": [3], "price": 4}\n', 422, "price"),
+        (b'{"axis": 1, "torque_Nm": [1], "speed_rpm": [2], "duration_s": [3]}\n', 422, "JSON are no table of axes"),
+        (b"axis,torque_Nm,speed_rpm\n1,2,3\n", 422, "The table: column duration_s is missing"),
         (b"hello", 422, ""),
     ],
 )
@@ -401,28 +388,60 @@ def test_a_file_that_stands_for_too_much_is_a_413_and_what_was_typed_is_kept(cli
     assert "too much memory or time" in answer.text and "typed before" in answer.text
 
 
-def test_an_axis_whose_name_is_too_long_is_a_rejected_one(client: TestClient) -> None:
+def test_an_axis_whose_name_is_too_long_is_a_rejected_one(client: TestClient, tmp_path: Path) -> None:
     """The same as over REST and by the command, since it is refused where tables are read."""
     rows = [{**row_of("x", HUB), "axis": "a" * 5000}, row_of("two", HUB)]
-    content = "".join(json.dumps(row) + "\n" for row in rows).encode()
+    content = write(tmp_path / "axes.csv", rows).read_bytes()
 
     sized = post(client, content)
     page = client.get(sized.headers["location"]).text
-    answers = client.post("/api/v1/fleet", content=content, headers={"Content-Type": "application/x-ndjson"})
+    answers = client.post("/api/v1/fleet", content=content, headers={"Content-Type": "text/csv"})
 
     assert "must have at most 1000 characters" in page and "a" * 1000 in page and "a" * 1001 not in page
-    first, second = map(json.loads, answers.text.splitlines())
+    first, second = csv.DictReader(io.StringIO(answers.text))
     assert (first["axis"], first["error"]) == ("a" * 1000, "axis: must have at most 1000 characters")
-    assert second["error"] is None
+    assert second["error"] == ""
 
 
-def test_inputs_of_a_fleet_are_kept_up_to_a_size(
-    tmp_path: Path, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("form", ["cells", "typed"])
+def test_an_axis_that_is_torn_apart_is_one_rejected_row(form: str, client: TestClient) -> None:
+    head = "Axis;Torque [Nm];Speed [rpm];Duration [s]" if form == "cells" else "axis,torque_Nm,speed_rpm,duration_s"
+    rows = [f"{name},40,{speed},1" for name, speed in (("a", 100), ("b", 100), ("a", 200), ("c", 0), ("a", 9e9))]
+    text = "\n".join([head, *(row.replace(",", ";") if form == "cells" else row for row in rows)])
+
+    sized = post(client, text.encode())
+    if sized.status_code == 200:
+        sized = post(client, fields={**fields_of(sized.text), "size": "1"})
+
+    answers = pq.read_table(io.BytesIO(client.get(f"{sized.headers['location']}/axes.parquet").content)).to_pylist()
+    assert [row["axis"] for row in answers] == ["a", "b", "c"]
+    assert answers[0]["error"] == "axis: must be unique, with its rows together"
+    assert [bool(row["error"]) for row in answers] == [True, False, True]
+
+
+@pytest.mark.parametrize("count", [10_001, 2])
+def test_a_table_with_more_than_a_machine_has_is_told_where_there_is_room(
+    count: int, client: TestClient, tmp_path: Path
 ) -> None:
-    axes, answers = write(tmp_path / "axes.ndjson", [row_of("one", HUB)]), tmp_path / "answers.parquet"
-    size_fleet(Order(axes, answers), catalogue)
-    assert fleet_result.draft_of(kept_listing_of(axes, answers, catalogue), catalogue).selected == 1
-    monkeypatch.setattr(listing, "MOST_BYTES", 100)
-    with pytest.raises(Problem) as refused:
-        fleet_result.draft_of(kept_listing_of(axes, answers, catalogue), catalogue)
-    assert refused.value.status_code == 413 and "hpn fleet" in refused.value.detail
+    phases = 1 if count > 2 else 100_001
+    lists = {name: [[1.0] * phases] * count for name in ("torque_Nm", "speed_rpm", "duration_s")}
+    pq.write_table(pa.table({"axis": [str(number) for number in range(count)], **lists}), tmp_path / "axes.parquet")
+
+    answer = post(client, (tmp_path / "axes.parquet").read_bytes())
+
+    assert answer.status_code == 413
+    assert "the limit of a page is" in answer.text and "POST /api/v1/fleet" in answer.text
+
+
+def test_reasons_are_kept_as_codes_and_values(client: TestClient, fleet: str, service: FastAPI) -> None:
+    assert client.portal is not None
+    saved = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
+    answers = table_of_kept(saved.answers)
+
+    assert "error" not in answers.column_names
+    (reason,) = reasons_of(answers["faults"].to_pylist()[2])
+    assert (reason.column, reason.code) == ("torque_Nm", "float_type")
+    assert reason.sentence == Sentence(
+        "row {number}: {reason}",
+        {"number": "6", "reason": Sentence("must be a number, such as 9.3, not {found}", {"found": '"abc"'})},
+    )

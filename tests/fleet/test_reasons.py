@@ -1,11 +1,13 @@
-"""Reasons of rejected axes as sentences: read back from the answers, each has a German text with its values."""
+"""Reasons of rejected axes as sentences: each has a German text with its values, and is kept as it is."""
 
-import json
 from typing import Any
 
 import pytest
 
-from hpn.web.pages.fleet_reasons import reasons_of
+from hpn.catalogue import Catalogue
+from hpn.fleet.faults import Fault, kept, reasons_of
+from hpn.fleet.machine import batch_of, kept_of, table_of
+from hpn.fleet.outcome import outcome
 from hpn.words.reader import Reader
 from tests.fleet.conftest import Size
 
@@ -19,10 +21,12 @@ WRONG: tuple[dict[str, Any], ...] = (
     {"duration_s": [0.0, 3.0]},
     {"duration_s": [1e99, 3.0]},
     {"torque_Nm": [40.0, None]},
+    {"name": ["a", 5]},
     {"pause_s": -1.0},
     {"pause_s": "long"},
     {"output_load.life_h": 20000.0},
     {"requirements.utilisation": 1.5},
+    {"requirements.load_reverses": "perhaps"},
     {"requirements.sizes": ["20A", "99A"]},
     {"requirements.sizes": "20A"},
     {"requirements.sizes": ["20A", 14]},
@@ -37,41 +41,62 @@ WRONG: tuple[dict[str, Any], ...] = (
     {"rank_by": "colour"},
     {"rank_by": 3},
     {"output_load.radial_N": 100.0, "output_load.model": "digitised"},
-    {"colour": "red"},
 )
-LINES = ('{"axis": "broken", "torque_Nm": [', '{"axis": 7, "torque_Nm": [1]}', json.dumps({"axis": "sound", **SOUND}))
-TWICE = f'{{"axis": "twice", "pause_s": 1, {json.dumps(SOUND)[1:-1]}, "pause_s": 2}}'
-CELLS = b"axis,torque_Nm,speed_rpm,duration_s\na,9,5,1\nb,9 5,5,1\nc,9,5\n,9,5,1\n\xff,9,5,1\nd,inf,5,1\n"
+CELLS = (
+    b"axis,torque_Nm,speed_rpm,duration_s,pause_s\na,9,5,1,\nb,9 5,5,1,\nc,9,5\n,9,5,1,\n\xff,9,5,1,\nd,inf,5,1,\n"
+    b"e,9,5,1,1\ne,9,5,1,2\nf,9,5,1,\na,9,5,1,\n" + b"x" * 1001 + b",9,5,1,\n"
+)
 
 
-def test_every_reason_has_a_german_text(size: Size) -> None:
-    rows = [json.dumps({"axis": str(place), **SOUND, **wrong}) for place, wrong in enumerate(WRONG)]
+def test_every_reason_has_a_german_text(catalogue: Catalogue) -> None:
+    axes = [{"axis": str(place), **SOUND, **wrong} for place, wrong in enumerate(WRONG)]
+    rejected = outcome(batch_of([{"axis": "sound", **SOUND}, *axes]), catalogue)["answers"].to_pylist()
 
-    answers = [*size("\n".join((json.dumps({"axis": "sound", **SOUND}), *rows, *LINES, TWICE))), *size(CELLS, ".csv")]
-
-    assert [row["axis"] for row in answers if not row["error"]] == ["a"]
-    for error in filter(None, (row["error"] for row in answers)):
-        reasons = reasons_of(error)
-        assert "; ".join(f"{column}: {reason.text}" for column, reason in reasons) == error
-        for _, reason in reasons:
-            assert Reader("de").told(reason) != reason.text
+    assert [row["axis"] for row in rejected if not row["error"]] == ["sound"]
+    for row in rejected[1:]:
+        assert_told(row)
 
 
-def test_a_quotation_in_a_reason_is_no_reason_of_its_own() -> None:
-    (first, second) = reasons_of('n: phase 2: must be a number, such as 9.3, not "a: b"; duration_s: is required')
+def test_every_reason_of_a_file_has_a_german_text(size: Size, catalogue: Catalogue) -> None:
+    answers = list[dict[str, Any]]()
 
-    assert [first[0], second[0]] == ["n", "duration_s"]
-    assert Reader("de").told(first[1]) == 'Phase 2: muss eine Zahl sein, z. B. 9.3, nicht "a: b"'
+    size(CELLS, ".csv", use=lambda tables: answers.extend(row for table in tables for row in table.to_pylist()))
 
-
-def test_a_quoted_separator_is_written_closer(size: Size) -> None:
-    (answer,) = size(json.dumps({"axis": "a", **SOUND, "speed_rpm": [250.0, "x; n: 5"]}))
-
-    assert [column for column, _ in reasons_of(answer["error"])] == ["speed_rpm"]
+    assert [row["axis"] for row in answers if not row["error"]] == ["f"]
+    for row in answers:
+        if row["error"]:
+            assert_told(row)
 
 
-@pytest.mark.parametrize("bad", [2**63, 10**300, -(2**63) - 1, 2.5, True, None])
+def assert_told(row: dict[str, Any]) -> None:
+    """The text of an answer is that of its reasons, each of which is German for a German reader."""
+    reasons = reasons_of(row["faults"])
+    assert "; ".join(f"{reason.column}: {reason.sentence.text}" for reason in reasons) == row["error"]
+    for reason in reasons:
+        assert Reader("de").told(reason.sentence) != reason.sentence.text
+        assert reason.code
+
+
+def test_a_text_that_an_earlier_version_has_kept_is_shown_as_it_is() -> None:
+    (reason,) = reasons_of(None, "n: phase 2: must be a number, such as 9.3; duration_s: is required")
+
+    assert reason.column == ""
+    assert reason.sentence.text == "n: phase 2: must be a number, such as 9.3; duration_s: is required"
+    assert reasons_of(None, None) == []
+
+
+def test_a_reason_is_kept_with_its_values(catalogue: Catalogue) -> None:
+    found = kept_of([{"axis": "a", **SOUND, "speed_rpm": [250.0, "x; n: 5"]}], (), {"a": (7, 9)}, catalogue)
+    (cell,) = table_of(found.answers)["faults"].to_pylist()
+    (reason,) = reasons_of(cell)
+
+    assert kept([Fault(0, reason.column, reason.sentence, reason.code)]) == cell
+    assert reason.sentence.text == 'row 9: must be a number, such as 9.3, not "x;n: 5"'
+    assert Reader("de").told(reason.sentence) == 'Zeile 9: muss eine Zahl sein, z. B. 9.3, nicht "x;n: 5"'
+
+
+@pytest.mark.parametrize("bad", [2.5, float("nan"), 1e300, None])
 def test_one_bad_axis_decides_nothing_for_the_others(bad: Any, size: Size) -> None:
-    answers = size("\n".join(json.dumps({"axis": axis, **SOUND}) for axis in (bad, 1, 2, bad)))
+    answers = size([{"axis": axis, **SOUND} for axis in (bad, 1.0, 2.0, bad)])
 
     assert [row["axis"] for row in answers if not row["error"]] == [1, 2]

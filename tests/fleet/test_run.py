@@ -279,7 +279,7 @@ def test_after_a_kill_at_any_moment_the_next_run_gives_the_same_bytes(many: Path
 def test_a_full_disk_is_said_and_leaves_nothing(many: Path, tmp_path: Path) -> None:
     disk = tmp_path / "disk"
     disk.mkdir()
-    output = disk / "out.ndjson"
+    output = disk / "out.csv"
     with small_disk(disk):
         with full(disk):
             before = files(disk)
@@ -288,4 +288,4 @@ def test_a_full_disk_is_said_and_leaves_nothing(many: Path, tmp_path: Path) -> N
             assert "No space left on device" in run.stderr
             assert files(disk) == before
         assert ended(many, output).returncode == 0
-        assert len(output.read_text().splitlines()) == 400
+        assert len(output.read_text().splitlines()) == 401

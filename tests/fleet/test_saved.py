@@ -14,11 +14,10 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.engine.selection import select
-from hpn.fleet.listing import as_parquet
+from hpn.fleet.machine import as_parquet, table_of
 from hpn.store import FleetDraft
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.web.app import create_app
-from hpn.web.pages.fleet_files import table_of
 from hpn.web.settings import Settings
 from tests.fleet.page import HUB, post
 from tests.fleet.tables import row_of, write

@@ -1,6 +1,7 @@
 """Tables as they may look, and the words for those that can't be used, as a whole or in a row."""
 
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pyarrow as pa
@@ -9,8 +10,9 @@ import pytest
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.cli import main
 from hpn.engine.selection import select
-from hpn.fleet import lines, run
+from hpn.fleet import run
 from hpn.fleet.columns import COLUMNS
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.run import size_fleet
@@ -41,37 +43,44 @@ def test_an_axis_torn_over_batches_has_one_row_where_it_comes_first(
     assert {row["axis"] for row in read(tmp_path / "all.parquet")} == {1, 2, 3, 4}
 
 
-def test_an_axis_that_one_of_two_tables_lacks_is_rejected_whole(size: Size, tmp_path: Path) -> None:
-    rows, beside = in_long_form(AXES)
-    answers = size(
-        [row for row in rows if row["axis"] != "a1"],
-        beside=[row | {"pause_s": 4.0} for row in beside if row["axis"] not in ("a3", "a5")],
-    )
-    assert [row["axis"] for row in answers] == ["a0", "a1", "a2", "a3", "a4", "a5"]
-    assert [fault[0] for fault in faults(tmp_path)] == ["a1", "a3", "a5"]
-    assert [row["suitable"] is None for row in answers] == [False, True, False, True, False, True]
+OTHERS = {"pause_s": 4.0, "rank_by": "life", "requirements.sizes": ["14A", "20A"], "requirements.load_reverses": True}
 
 
-def test_an_axis_out_of_the_order_of_the_phases_is_rejected(size: Size, tmp_path: Path) -> None:
-    rows, beside = in_long_form(AXES[:4])
-    answers = size(rows, ".csv", beside=[beside[place] for place in (0, 2, 1, 3)])
-    assert [(row["axis"], bool(row["error"])) for row in answers] == [
-        ("a0", False), ("a1", False), ("a2", True), ("a3", False),
-    ]  # fmt: skip
-
-
-def test_axes_of_many_batches_find_their_rows_in_the_other_table(
-    size: Size, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".arrow"])
+@pytest.mark.parametrize("repeated", [False, True])
+def test_other_inputs_stand_in_the_first_row_of_an_axis_or_in_all(
+    repeated: bool, suffix: str, size: Size, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(lines, "BLOCK_BYTES", 100)
-    axes = [{**AXES[0], "axis": f"x{number}", "requirements.utilisation": 1 / (number + 1)} for number in range(40)]
-    rows, beside = in_long_form(axes)
-    del beside[17], rows[50:52]  # axis 25 has no phases, axis 17 nothing beside
-    in_pieces = size(rows, ".csv", beside=beside)
-    monkeypatch.undo()
-    assert in_pieces == size(rows, ".csv", beside=beside)
-    assert [row["axis"] for row in in_pieces] == [f"x{number}" for number in range(40)]
-    assert {row["axis"] for row in in_pieces if row["error"]} == {"x17", "x25"}
+    axes: list[Row] = [AXES[0] | OTHERS, AXES[1], AXES[2] | {"pause_s": 5.0}]
+    as_lists = size(axes, suffix)
+
+    assert size(in_long_form(axes, repeated=repeated), suffix) == as_lists
+    assert faults(tmp_path) == []
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+@pytest.mark.parametrize(
+    ("name", "first", "second"),
+    [
+        ("pause_s", 4.0, 5.0),
+        ("pause_s", None, 4.0),
+        ("rank_by", "life", "weight"),
+        ("requirements.sizes", ["14A", "20A"], ["20A", "14A"]),
+        ("requirements.ratios", None, [5]),
+    ],
+)
+def test_two_values_of_an_input_reject_their_axis_by_the_name_of_the_column(
+    name: str, first: Any, second: Any, suffix: str, size: Size, tmp_path: Path
+) -> None:
+    rows = in_long_form(AXES[:3])
+    rows[2] |= {name: first}
+    rows[3] |= {name: second}
+    answers = size(rows, suffix)
+    assert [bool(row["error"]) for row in answers] == [False, True, False]
+    assert faults(tmp_path) == [
+        ("a1", name, "must stand in the first row of an axis, or be the same in all of its rows")
+    ]
+    assert [row["code"] for row in read(tmp_path / "rejected.parquet")] == ["differs"]
 
 
 def test_cells_that_are_no_numbers_are_told_by_axis_and_column(size: Size, tmp_path: Path) -> None:
@@ -100,16 +109,6 @@ def test_a_row_that_is_cut_rejects_the_axis_that_it_may_belong_to(
     answers = size(content, ".csv")
     assert [row["axis"] for row in answers if row["error"]] == rejected
     assert sorted({fault[0] for fault in faults(tmp_path)}) == rejected
-
-
-@pytest.mark.parametrize(
-    ("last", "rejected"),
-    [('{"axis": "b", "torque_Nm": 4', ["b"]), ('{"axis": "b', ["b"]), ("[1]", ["b"]), ('{"axis": "c", "x": 1}', ["c"])],
-)
-def test_a_broken_line_rejects_the_axis_that_it_may_belong_to(last: str, rejected: list[str], size: Size) -> None:
-    row = '{{"axis": "{0}", "torque_Nm": 40, "speed_rpm": 250, "duration_s": 1}}\n'
-    answers = size("".join(map(row.format, "aab")) + last)
-    assert [row["axis"] for row in answers if row["error"]] == rejected
 
 
 def test_a_row_with_too_few_or_too_many_cells_is_quoted_since_it_may_have_no_axis(size: Size, tmp_path: Path) -> None:
@@ -192,7 +191,6 @@ def refusal(order: Order, catalogue: Catalogue) -> str:
         ("axis\ttorque_Nm\tspeed_rpm\tduration_s", "separated by tabs, where commas belong"),
         ("axis,torque_Nm,speed_rpm,duration_s,radial_n", "it looks like radial_N"),
         ("axis,torque_Nm,speed_rpm,duration_s,axis", "column axis is there twice"),
-        ("axis,torque_Nm,speed_rpm,duration_s,requirements.life_h", "belongs into the table of --axes"),
         ("axis,torque_Nm,speed_rpm" + "".join(f",c{k}" for k in range(3000)), "column 'c19' is unknown; 2981 more"),
     ],
 )
@@ -203,25 +201,25 @@ def test_columns_that_are_missing_or_unknown_are_named(
     assert said in refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
 @pytest.mark.parametrize("content", [b"", b"\x00\x01hello", b"PAR1PAR1", b"ARROW1\x00\x00"])
 def test_a_file_that_is_none_is_named(suffix: str, content: bytes, tmp_path: Path, catalogue: Catalogue) -> None:
     (tmp_path / f"in{suffix}").write_bytes(content)
     assert f"in{suffix}: " in refusal(Order(tmp_path / f"in{suffix}", tmp_path / "out.csv"), catalogue)
 
 
-def test_without_a_torque_nothing_is_said_of_columns_that_one_of_the_two_forms_has(
-    tmp_path: Path, catalogue: Catalogue
+@pytest.mark.parametrize("suffix", [".ndjson", ".jsonl"])
+def test_lines_of_json_are_refused_with_what_takes_their_place(
+    suffix: str, tmp_path: Path, catalogue: Catalogue
 ) -> None:
-    (tmp_path / "in.csv").write_text(
-        "axis,Torque,speed_rpm,duration_s,pause_s,requirements.life_h\na,[1],[2],[3],4,5\n"
-    )
-    assert refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue).endswith(
-        "in.csv: column 'Torque' is unknown; it looks like torque_Nm; column torque_Nm is missing"
-    )
+    path = tmp_path / f"in{suffix}"
+    path.write_text('{"axis": 1, "torque_Nm": [1]}\n')
+    sound = write(tmp_path / "in.csv", AXES)
+    for order in (Order(path, tmp_path / "out.csv"), Order(sound, tmp_path / f"out{suffix}")):
+        assert "tables in lines of JSON are gone: use Parquet, Arrow or CSV" in refusal(order, catalogue)
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".csv"])
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
 def test_a_table_in_utf16_is_told_so(suffix: str, encoding: str, tmp_path: Path, catalogue: Catalogue) -> None:
     (tmp_path / f"in{suffix}").write_bytes("\ufeffaxis\ttorque_Nm\n".encode(encoding))
@@ -248,7 +246,7 @@ def test_a_row_group_that_is_corrupt_is_named(size: Size, tmp_path: Path, catalo
     assert "row group 2 can’t be read" in refusal(Order(path, tmp_path / "out.csv"), catalogue)
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
 def test_no_rows_give_no_rows(suffix: str, tmp_path: Path, catalogue: Catalogue) -> None:
     path = tmp_path / f"in{suffix}"
     if suffix in (".parquet", ".arrow"):
@@ -267,8 +265,17 @@ def test_no_rows_give_no_rows(suffix: str, tmp_path: Path, catalogue: Catalogue)
     assert pa.ipc.open_file(str(tmp_path / "out.arrow")).read_all().num_rows == 0
 
 
+def test_the_option_of_a_second_table_is_refused_with_what_takes_its_place(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write(tmp_path / "in.csv", in_long_form(AXES))
+    assert main(["fleet", str(path), str(tmp_path / "out.csv"), "--axes", str(path)]) == 2
+    assert "--axes: is gone: one table has all columns" in capsys.readouterr().err
+    assert not (tmp_path / "out.csv").exists()
+
+
 def test_a_file_is_never_written_over_what_is_read(tmp_path: Path, catalogue: Catalogue) -> None:
-    path = write(tmp_path / "in.csv", in_long_form(AXES)[0])
+    path = write(tmp_path / "in.csv", in_long_form(AXES))
     with pytest.raises(FleetError, match="is named twice"):
         size_fleet(Order(path, path), catalogue)
     assert "no folder" in refusal(Order(path, tmp_path / "none" / "out.csv"), catalogue)
@@ -276,8 +283,8 @@ def test_a_file_is_never_written_over_what_is_read(tmp_path: Path, catalogue: Ca
 
 
 def test_candidates_are_those_of_the_reply(size: Size, tmp_path: Path, catalogue: Catalogue) -> None:
-    size(AXES, candidates=tmp_path / "all.ndjson")
-    rows = read(tmp_path / "all.ndjson")
+    size(AXES, candidates=tmp_path / "all.parquet")
+    rows = read(tmp_path / "all.parquet")
     assert len(rows) == 6 * len(catalogue.gears)
     wanted: list[Row] = []
     for row in AXES:
@@ -300,45 +307,17 @@ def test_a_name_that_is_no_utf8_rejects_the_axes_that_its_row_may_belong_to(size
     assert ("b", "axis", "phase 2: must be UTF-8") in faults(tmp_path)
 
 
-@pytest.mark.parametrize(
-    "row",
-    [
-        '{"axis": "a", "pause_s": 5, "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3], "pause_s": 9}',
-        '{"axis": "a", "pause_s": 5, "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3], "pause\\u005fs": 9}',
-        '{"axis": "a", "pause_s": 9, "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3], "pause_s" : 9}',
-    ],
-)
-def test_a_line_with_a_name_twice_is_rejected_by_that_name(row: str, size: Size) -> None:
-    sound = (
-        '{"axis": "b: \\"pause_s\\": 5, \\"pause_s\\": 9", "torque_Nm": [40], "speed_rpm": [250], "duration_s": [3]}'
-    )
-    answers = size(f"{row}\n{sound}\n")
-    assert [(answer["error"], bool(answer["selected"])) for answer in answers] == [
-        ("pause_s: is there more than once", False),
-        (None, True),
-    ]
-
-
-def test_lines_nested_as_deep_as_readers_can_go_reject_their_axes_alone(size: Size) -> None:
-    """One reader of JSON gives up a few lists before another; wherever, the run goes on."""
-    sound = '"torque_Nm": [40], "speed_rpm": [250], "duration_s": [3]'
-    deep = (f'{{"axis": "{depth}", {sound}, "pause_s": {"[" * depth}{"]" * depth}}}' for depth in range(880, 1001))
-    answers = size("\n".join((f'{{"axis": "sound", {sound}}}', *deep)))
-    assert [answer["axis"] for answer in answers if answer["selected"]] == ["sound"]
-    assert len(answers) == 122
-
-
 # --- Texts that are too long ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("unit_rows", [2, 100])
 @pytest.mark.parametrize("form", ["list", "long"])
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
 def test_an_axis_whose_name_is_too_long_is_rejected_under_its_beginning(
     suffix: str, form: str, unit_rows: int, size: Size, tmp_path: Path
 ) -> None:
     rows = [AXES[0], {**AXES[1], "axis": "ü" * 1001}, AXES[2], {**AXES[3], "axis": "b" * 1000}]
-    given = write(tmp_path / f"in{suffix}", rows if form == "list" else in_long_form(rows)[0], unit_rows=unit_rows)
+    given = write(tmp_path / f"in{suffix}", rows if form == "list" else in_long_form(rows), unit_rows=unit_rows)
 
     answers = size(given.read_bytes(), suffix)
 
@@ -347,7 +326,7 @@ def test_an_axis_whose_name_is_too_long_is_rejected_under_its_beginning(
     assert faults(tmp_path) == [("ü" * 1000, "axis", "must have at most 1000 characters")]
 
 
-@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv", ".ndjson"])
+@pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
 def test_a_text_that_is_too_long_is_a_fault_of_its_axis(suffix: str, size: Size, tmp_path: Path) -> None:
     rows = [
         {**AXES[0], "rank_by": "weight", "requirements.sizes": ["14A"]},

@@ -210,21 +210,6 @@ PACKED: dict[str, Make] = {
 }
 """Texts in gzip."""
 
-OBJECTS: dict[str, Make] = {
-    "a key of 90,000 brackets": lambda: b'{"%s":1,"T":40,"n":250,"t":1}\n' % (b"[" * 90_000),
-    "a value of blanks": lambda: (
-        b'{"Achse":"A","Moment Nm":40,"Drehzahl rpm":250,"Dauer s":1,"Ratio":"5%sx"}\n' % (b" " * 90_000)
-    ),
-    "values that are texts": lambda: (
-        b'{"Achse":"A","Moment Nm":"1 234,5 Nm","Drehzahl rpm":"1/min","Dauer s":"1"}\n' * 1_100
-    ),
-    "signs that are escaped": lambda: b'{"Achse":"%s","Moment Nm":1}\n' % (rb"\u005b" * 15_000),
-    "objects in values": lambda: b'{"Achse":{"a":%s1%s},"Moment Nm":1}\n' % (b'{"a":' * 15_000, b"}" * 15_000),
-    "numbers beyond every number": lambda: (
-        b'{"Achse":"A","Moment Nm":1e400,"Drehzahl rpm":-1e400,"Dauer s":1e-400}\n' * 1_100
-    ),
-}
-
 TABLES: dict[str, Make] = {
     "Parquet with a heading of brackets": lambda: parquet(
         table_of(*[zeros(1)] * 4, names=("[" * 30_000, "T", "n", "t"))

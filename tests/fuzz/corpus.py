@@ -128,20 +128,13 @@ TABLES_OF_AXES = (
 
 
 def _fleets() -> Iterator[bytes]:
-    """The applications as tables of axes in both forms and text formats, a second table behind a mark."""
+    """The applications as tables of axes in both forms."""
     rows = [row_of(f"axis {number}", application) for number, application in enumerate(APPLICATIONS[:6])]
-    phases, beside = in_long_form(rows)
     with tempfile.TemporaryDirectory() as folder:
-        for suffix in (".csv", ".ndjson"):
-            tables = [
-                write(Path(folder, f"{place}{suffix}"), part) for place, part in enumerate((rows, phases, beside))
-            ]
-            alone, *pair = (path.read_bytes() for path in tables)
-            yield alone
-            yield SECOND_TABLE.join(pair)
+        for table in (rows, in_long_form(rows), in_long_form(rows, repeated=True)):
+            yield write(Path(folder, "axes.csv"), table).read_bytes()
 
 
-SECOND_TABLE = b"\x1e\n"
 FLEETS = tuple(_fleets())
 
 

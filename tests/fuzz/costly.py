@@ -260,14 +260,13 @@ OBJECTS: dict[str, Make] = {
 WORKBOOKS |= cells.WORKBOOKS
 TABLES |= cells.TABLES
 TEXTS |= cells.TEXTS
-OBJECTS |= cells.OBJECTS
 PACKED = cells.PACKED
 
 FILES: dict[str, Make] = {**WORKBOOKS, **TABLES, **TEXTS, **PACKED, **OBJECTS}
 """All of them by name."""
 
 NAMES = {
-    **{**dict.fromkeys(WORKBOOKS, "a.xlsx"), **dict.fromkeys(TEXTS, "a.csv"), **dict.fromkeys(OBJECTS, "a.ndjson")},
+    **{**dict.fromkeys(WORKBOOKS, "a.xlsx"), **dict.fromkeys(TEXTS, "a.csv"), **dict.fromkeys(OBJECTS, "a.json")},
     **dict.fromkeys(PACKED, "a.csv.gz"),
 }
 

@@ -9,6 +9,7 @@ from random import Random
 from urllib.parse import quote, urlencode
 
 import msgspec
+import pyarrow.parquet as pq
 from pydantic import SecretStr
 
 from hpn.application import Application, InputError
@@ -193,19 +194,14 @@ _FILES = {table.file.encode() for table in TABLES}
 
 async def _fleet(world: World, random: Random, content: bytes) -> str:
     """Size a fleet as the command does, in this process; each axis gets figures or an error."""
-    suffix = ".ndjson" if content.lstrip().startswith(b"{") else ".csv"
-    names = ("input", "axes") if corpus.SECOND_TABLE in content else ("input",)
-    files = [world.fleet / f"{name}{suffix}" for name in names]
-    for file, table in zip(files, content.split(corpus.SECOND_TABLE, 1), strict=True):
-        file.write_bytes(table)
-    answers, rejected = world.fleet / "answers.ndjson", world.fleet / "rejected.ndjson"
-    order = Order(files[0], answers, files[1] if files[1:] else None, rejected=rejected)
+    (path := world.fleet / "input.csv").write_bytes(content)
+    order = Order(path, world.fleet / "answers.parquet", rejected=world.fleet / "rejected.parquet")
     try:
         size_fleet(order, world.app.state.catalogue)
     except FleetError as refusal:
         assert str(world.fleet) in str(refusal), f"names no file: {refusal}"
         return "refused"
-    rows = [msgspec.json.decode(line) for line in order.answers.read_bytes().splitlines()]
+    rows = pq.read_table(order.answers).to_pylist()
     assert all((row["error"] is None) == (row["average_torque_Nm"] is not None) for row in rows)
     return "sized" if any(row["error"] is None for row in rows) else "rejected"
 

@@ -5,14 +5,17 @@ HPN is the command of another installed checkout; what an older version refuses 
 """
 
 import argparse
+import csv
+import io
 import json
 import sqlite3
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import httpx
 
+from tests.build import Json
 from tests.kept.content import DELETED, FLEETS, PAGES, RENAMED, SELECTIONS
 from tests.operations.service import HPN, serving
 
@@ -59,13 +62,21 @@ def size(client: httpx.Client) -> Iterable[str]:
     """Size and save fleets by the page; the names of those that the version refuses."""
     door = next((path for path in ("/machines", "/fleets") if client.get(path).status_code == 200), None)
     for name, axes in FLEETS.items():
-        table = "".join(json.dumps(axis) + "\n" for axis in axes).encode()
-        answer = client.post(door, files={"file": ("axes.ndjson", table)}) if door else None
+        answer = client.post(door, files={"file": ("axes.csv", table_of(axes))}) if door else None
         if answer is None or answer.status_code != 303:
             yield name
         else:
             fields = {"title": name, "ref": "P-7", "author": "M. Muster", "rev": "B"}
             assert client.post(answer.headers["location"], data=fields).status_code == 303
+
+
+def table_of(axes: Sequence[Json]) -> bytes:
+    """Axes as CSV in list form."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(dict.fromkeys(name for axis in axes for name in axis)))
+    writer.writeheader()
+    writer.writerows({k: json.dumps(v) if isinstance(v, list) else v for k, v in axis.items()} for axis in axes)
+    return text.getvalue().encode()
 
 
 def dumped(file: Path) -> str:

@@ -1,12 +1,9 @@
-"""Fleets that arrive: a place is taken by a body that is there, the disk is bounded, no page elsewhere sends one."""
+"""Fleets that arrive: a place is taken by a body that is there, and the disk is bounded."""
 
 import socket
-from collections.abc import Iterator
 from contextlib import ExitStack
-from typing import Any
 
 import pytest
-from starlette.testclient import TestClient
 
 from hpn.web.door.disk import Disk
 from hpn.web.door.problems import Problem
@@ -63,48 +60,3 @@ def test_shares_of_the_disk_add_up() -> None:
 
     assert refused.value.status_code == 503
     assert disk.taken == 0
-
-
-# --- Pages elsewhere --------------------------------------------------------------------------------------------------
-
-
-def sent_by(client: TestClient, headers: dict[str, str]) -> Any:
-    """Answer to a form with a fleet."""
-    return client.post(PATH, files={"input": ("axes.csv", AXES, "text/csv")}, headers=headers)
-
-
-@pytest.fixture
-def permitting(make_client: MakeClient) -> Iterator[TestClient]:
-    """A service that permits scripts of one origin."""
-    yield make_client(cors_origins="https://plm.example")
-
-
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {"Sec-Fetch-Site": "cross-site", "Origin": "https://evil.example"},
-        {"Sec-Fetch-Site": "same-site", "Origin": "http://other.testserver"},
-        {"Sec-Fetch-Site": "cross-site"},
-        {"Origin": "https://evil.example"},
-        {"Origin": "null"},
-    ],
-)
-def test_a_form_of_a_page_elsewhere_is_refused(headers: dict[str, str], permitting: TestClient) -> None:
-    answer = sent_by(permitting, headers)
-
-    assert (answer.status_code, answer.headers["Content-Type"]) == (403, "application/problem+json")
-
-
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {},
-        {"Sec-Fetch-Site": "same-origin", "Origin": "http://testserver"},
-        {"Origin": "http://testserver"},
-        {"Sec-Fetch-Site": "cross-site", "Origin": "https://plm.example"},
-    ],
-)
-def test_a_form_of_a_program_an_own_page_or_a_permitted_origin_is_taken(
-    headers: dict[str, str], permitting: TestClient
-) -> None:
-    assert sent_by(permitting, headers).status_code == 200

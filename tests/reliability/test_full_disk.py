@@ -12,14 +12,14 @@ from tests.reliability.faults import SAVE, assert_unavailable, client_of, full, 
 ROOM_BYTES = 4 << 20
 """Room that somebody makes: some megabytes, as the sentence says. The disk has 16."""
 
-TABLE = b'{"axis":"Hub","torque_Nm":[40,20,30],"speed_rpm":[100,200,300],"duration_s":[1,2,3]}\n'
+TABLE = b'axis,torque_Nm,speed_rpm,duration_s\nHub,"[40,20,30]","[100,200,300]","[1,2,3]"\n'
 SAID = "The disk of the database (HPN_DATABASE_URL) is full: make some megabytes of room on it"
 GESAGT = "Der Datenträger der Datenbank (HPN_DATABASE_URL) ist voll"
 
 
 def sized(client: TestClient) -> Any:
     """Answer of the page to a table of one axis, which it keeps."""
-    return client.post("/machines", files={"file": ("axes.ndjson", TABLE)}, follow_redirects=False)
+    return client.post("/machines", files={"file": ("axes.csv", TABLE)}, follow_redirects=False)
 
 
 def deletions(client: TestClient, ids: list[str], machine: str) -> list[Any]:

@@ -46,9 +46,9 @@ def saved(api: TestClient) -> str:
 
 
 @pytest.fixture(scope="module")
-def fleet(api: TestClient, service: FastAPI, tmp_path_factory: pytest.TempPathFactory) -> str:
+def fleet(api: TestClient, service: FastAPI) -> str:
     """Id of a fleet that was sized."""
-    draft = fleet_draft([row_of("hub", worked_example())], tmp_path_factory.mktemp("fleet"), service.state.catalogue)
+    draft = fleet_draft([row_of("hub", worked_example())], service.state.catalogue)
     assert api.portal is not None
     id: str = api.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)
     return id
@@ -169,7 +169,6 @@ BODIES = [
     ("POST", "/api/v1/select/batch", "application/json"),
     ("POST", "/api/v1/select/batch", "application/x-ndjson"),
     ("POST", "/api/v1/fleet", "text/csv"),
-    ("POST", "/api/v1/fleet", "multipart/form-data; boundary=b"),
     ("POST", "/paste", "multipart/form-data; boundary=b"),
     ("PATCH", "/api/v1/selections/{id}", "application/merge-patch+json"),
 ]

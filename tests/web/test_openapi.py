@@ -244,18 +244,3 @@ def test_a_required_field_is_never_null_and_an_optional_reply_field_may_be_left_
     for name in ("Selection", "Candidate", "CheckResult", "OneGearReply", "EnvelopeReply"):
         schema = document["components"]["schemas"][name]
         assert set(schema["required"]) == set(schema["properties"]), name
-
-
-def test_no_form_is_a_model_of_its_own(api: TestClient) -> None:
-    """openapi-generator leaves out the models of forms, and its Java imports them all the same: it can't compile."""
-    document = api.get("/openapi.json").json()
-    bodies = [
-        operation["requestBody"]["content"]
-        for operations in document["paths"].values()
-        for operation in operations.values()
-        if "requestBody" in operation
-    ]
-    forms = [content["multipart/form-data"]["schema"] for content in bodies if "multipart/form-data" in content]
-
-    assert forms
-    assert not [form for form in forms if "properties" in form or "$ref" in form]

@@ -9,7 +9,7 @@ from pydantic_core import ErrorDetails
 
 from hpn.words.fields import UNKNOWN
 from hpn.words.likeness import likeness
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, Value
 
 Location = tuple[str | int, ...]
 
@@ -47,11 +47,16 @@ class Fault(NamedTuple):
 
 def faults_of(error: ValidationError | InputError) -> list[Fault]:
     """Faults that the models or the selection have found."""
+    return [Fault(location, sentence.text, code) for location, sentence, code in sentences_of(error)]
+
+
+def sentences_of(error: ValidationError | InputError) -> list[tuple[Location, Sentence, str]]:
+    """The same with their sentences: location, sentence and code of each."""
     if isinstance(error, InputError):
-        return [Fault(location, text, NOT_AVAILABLE) for location, text in error.problems]
+        return [(location, sentence, NOT_AVAILABLE) for location, sentence in error.sentences]
     if error.error_count() > LISTED_ERRORS:
-        return [Fault((), f"has {error.error_count()} errors")]
-    return plain_faults(error.errors(include_url=False, include_input=False))
+        return [((), Sentence(N_("has {count} errors"), {"count": error.error_count()}), "invalid")]
+    return _told(error.errors(include_url=False, include_input=False))
 
 
 def unreadable(error: ValidationError) -> str | None:
@@ -67,23 +72,54 @@ def pointer(location: Location) -> str:
 
 def plain_faults(entries: Sequence[ErrorDetails]) -> list[Fault]:
     """Faults for pydantic's entries."""
+    return [Fault(location, sentence.text, code) for location, sentence, code in _told(entries)]
+
+
+def _told(entries: Sequence[ErrorDetails]) -> list[tuple[Location, Sentence, str]]:
     # A list whose items are wrong is also reported as too short; the items say it better.
     items = {entry["loc"][:end] for entry in entries for end in range(len(entry["loc"]))}
     kept = [entry for entry in entries if entry["type"] != "too_short" or entry["loc"] not in items]
-    told = [sentence_of(entry).text for entry in kept[:MOST_TOLD]]
-    told += [_plain_message(entry) for entry in kept[MOST_TOLD:]]
-    return [Fault(entry["loc"], text, entry["type"]) for entry, text in zip(kept, told, strict=True)]
+    told = [sentence_of(entry) for entry in kept[:MOST_TOLD]]
+    told += [_plain_sentence(entry) for entry in kept[MOST_TOLD:]]
+    return [(entry["loc"], sentence, entry["type"]) for entry, sentence in zip(kept, told, strict=True)]
 
 
 MOST_TOLD = 100
 """Errors whose sentence names the field that a misspelt one looks like, which takes a while to find."""
+
+BOUNDS = {
+    "greater_than_equal": N_("must be greater than or equal to {bound}"),
+    "greater_than": N_("must be greater than {bound}"),
+    "less_than_equal": N_("must be less than or equal to {bound}"),
+    "less_than": N_("must be less than {bound}"),
+    "string_too_short": N_("must have at least 1 character"),
+    "string_too_long": N_("must have at most {most} characters"),
+    "too_long": N_("must have at most {most} items, not {found}"),
+    "literal_error": N_("must be '{expected}'"),
+}
+"""Sentences with values, by pydantic's types of errors."""
 
 
 def sentence_of(entry: ErrorDetails) -> Sentence:
     """Pydantic's message in words that say what would be right; of a misspelt field what it looks like."""
     if entry["type"] == UNKNOWN:
         return unknown_field(str(entry["loc"][-1]), entry.get("ctx", {}).get("fields", ()))
-    return Sentence("{text}", {"text": _plain_message(entry)}, ("text",))
+    return _plain_sentence(entry)
+
+
+def _plain_sentence(entry: ErrorDetails) -> Sentence:
+    context, text = entry.get("ctx", {}), _plain_message(entry)
+    values: dict[str, Value] = {
+        "bound": text.rpartition(" ")[2],
+        "most": str(context.get("max_length")),
+        "found": str(context.get("actual_length")),
+        "expected": str(context.get("expected"))[1:-1],
+    }
+    if template := BOUNDS.get(entry["type"]):
+        told = Sentence(template, {name: value for name, value in values.items() if f"{{{name}}}" in template})
+        if told.text == text:  # pydantic has a singular, and says more where it knows more
+            return told
+    return Sentence("{text}", {"text": text}, ("text",))
 
 
 def unknown_field(name: str, fields: Iterable[str]) -> Sentence:

@@ -106,15 +106,10 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_fleet(fleet: argparse.ArgumentParser) -> None:
-    formats = (
-        "Parquet, Arrow IPC, CSV or NDJSON, by the suffix .parquet, .arrow, .arrows, .feather, .csv, .csv.gz, .ndjson "
-        "or .jsonl"
-    )
+    formats = "Parquet, Arrow IPC or CSV, by the suffix .parquet, .arrow, .arrows, .feather, .csv or .csv.gz"
     fleet.add_argument("input", type=Path, metavar="INPUT", help=f"the axes, or the phases of axes: {formats}")
-    fleet.add_argument(
-        "output", type=Path, metavar="OUTPUT", help="a row for each axis; .parquet, .arrow, .csv, .ndjson"
-    )
-    fleet.add_argument("--axes", type=Path, metavar="FILE", help="the other columns, where a row of INPUT is a phase")
+    fleet.add_argument("output", type=Path, metavar="OUTPUT", help="a row for each axis; .parquet, .arrow, .csv")
+    fleet.add_argument("--axes", help=argparse.SUPPRESS)  # gone, and refused with what takes its place
     fleet.add_argument("--candidates", type=Path, metavar="FILE", help="write every candidate of every axis")
     fleet.add_argument("--rejected", type=Path, metavar="FILE", help="write the faults of axes that have no answer")
     fleet.add_argument(
@@ -123,7 +118,7 @@ def _add_fleet(fleet: argparse.ArgumentParser) -> None:
         nargs="+",
         action="extend",
         default=[],
-        help="leave out columns of the tables that no application has",
+        help="leave out columns that no application has",
     )
     fleet.add_argument("--report", type=Path, metavar="FILE", help="write counts and the first 10,000 axes as HTML")
     fleet.add_argument("--lang", choices=("en", "de"), help="language of the report")

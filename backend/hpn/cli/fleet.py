@@ -4,14 +4,16 @@ import argparse
 import os
 import signal
 import sys
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
+from pyarrow import Table
 from tqdm import tqdm
 
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.fleet.listing import listing_of
-from hpn.fleet.order import FleetError, Order, require_writable
+from hpn.fleet.order import TWO_GONE, FleetError, Order, require_writable
 from hpn.fleet.run import Engine, Use, keep_memory, size_fleet, threads
 from hpn.fleet.tables import Progress
 from hpn.installed import require
@@ -27,7 +29,6 @@ def run(options: argparse.Namespace) -> int:
     order = Order(
         axes=options.input,
         answers=options.output,
-        requirements=options.axes,
         candidates=options.candidates,
         rejected=options.rejected,
         ignored=tuple(options.ignore),
@@ -71,7 +72,9 @@ def _engine(options: argparse.Namespace) -> Engine:
 
 
 def _require_used(options: argparse.Namespace) -> None:
-    """Raise FleetError for an option that says nothing without another one."""
+    """Raise FleetError for an option that is gone, or says nothing without another one."""
+    if options.axes is not None:
+        raise FleetError(f"--axes: {TWO_GONE}")
     if options.scheduler is not None and options.engine != "dask":
         raise FleetError("--scheduler: belongs to --engine dask")
     for name in ("lang", "service"):
@@ -87,7 +90,7 @@ def _require_report(report: Path) -> None:
     require("serve")  # whose page it is
 
 
-def _write_report(options: argparse.Namespace, order: Order, catalogue: Catalogue, answers: Path) -> None:
+def _write_report(options: argparse.Namespace, order: Order, catalogue: Catalogue, answers: Iterator[Table]) -> None:
     """Write the report, where one is wanted, whole under its name or not at all."""
     if options.report is None:
         return

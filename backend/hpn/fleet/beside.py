@@ -1,9 +1,15 @@
-"""Sizing a fleet for a service, in a process beside it: nothing of Arrow is imported by this module alone."""
+"""Work on fleets for a service, in a process beside it: nothing of Arrow is imported by this module alone."""
 
-from typing import NamedTuple
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 from hpn.catalogue import Catalogue
+from hpn.fleet.faults import Fault
 from hpn.fleet.order import FleetError, Order
+from hpn.tables.columns import NO_CHOICES, Choices
+from hpn.tables.files import Wanted, text_of
+from hpn.tables.reading import Reading, reading_of
 
 
 class Sized(NamedTuple):
@@ -30,3 +36,40 @@ def sized(order: Order, catalogue: Catalogue, workers: int) -> Sized:
             raise
         return Sized(code=error.errno)
     return Sized(tuple(ignored))
+
+
+NAME = "The table"
+"""Name of a table that a page is given."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MachineReading:
+    """A reading of a table of axes; of one that is taken as it is its axes and what is wrong with their cells, or words
+    for one that can't be used; and how many axes and phases it has."""
+
+    reading: Reading
+    rows: Sequence[Mapping[str, Any]] = ()
+    faults: Sequence[Fault] = ()
+    axes: int = 0
+    phases: int = 0
+    refusal: str = ""
+
+
+def read_machine(
+    content: bytes | str, wanted: Wanted, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
+) -> MachineReading:
+    """Reading of a file or a text, as `reading_of` gives it."""
+    reading = reading_of(content, wanted, choices, assumed)
+    if not reading.suffix:
+        rows = reading.table.axes if reading.table else ()
+        lists = (row.get("torque_Nm") for row in rows)
+        phases = sum(len(each) for each in lists if isinstance(each, list))
+        return MachineReading(reading=reading, axes=len(rows), phases=phases)
+    from hpn.fleet.machine import given_of
+
+    content = content.encode() if isinstance(content, str) else content
+    try:
+        given = given_of(text_of(content).encode() if reading.suffix == ".csv" else content, NAME + reading.suffix)
+    except FleetError as error:
+        return MachineReading(reading=reading, refusal=str(error).replace(NAME + reading.suffix, NAME))
+    return MachineReading(reading=reading, rows=given.rows, faults=given.faults, axes=given.axes, phases=given.phases)

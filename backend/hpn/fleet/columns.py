@@ -16,8 +16,10 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.types as kinds
 
+from hpn.application.faults import Location
 from hpn.application.input_fields import FIELDS, PHASE_FIELDS, InputField
 from hpn.application.unique import require_unique
+from hpn.fleet.faults import OF_ITEM, OF_PHASE, OF_SIZE
 from hpn.fleet.uuids import is_uuid
 
 Json = dict[str, Any]
@@ -28,6 +30,8 @@ NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?|[+-]?(na
 """A number as it stands in a cell of text."""
 
 PAUSE = ("duty_cycle", "pause_s")
+Place = tuple[str, str, str]
+"""Template for a reason inside of a cell, and the name and value of the place in it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,17 +120,17 @@ class Columns:
                 place[column.path[-1]] = [_plain(item, column) for item in value] if is_list else _plain(value, column)
         return application
 
-    def column_at(self, location: tuple[str | int, ...]) -> tuple[str, str]:
-        """Column that a place in the application belongs to, and the words for the place inside of it."""
+    def column_at(self, location: Location) -> tuple[str, Place | None]:
+        """Column that a place in the application belongs to, and the place inside of it."""
         if location[:2] == ("duty_cycle", "phases"):
-            number = f"phase {location[2] + 1}" if len(location) > 2 and isinstance(location[2], int) else ""
-            return (str(location[3]) if len(location) > 3 else "torque_Nm" if not number else "speed_rpm"), number
+            if len(location) == 2 or not isinstance(location[2], int):
+                return "torque_Nm", None
+            return (str(location[3]) if len(location) > 3 else "speed_rpm"), (OF_PHASE, "number", str(location[2] + 1))
         names = tuple(part for part in location if isinstance(part, str))
-        places = [f"item {part + 1}" for part in location if isinstance(part, int)]
         if (column := self.at.get(names[:-1])) is not None and column.by_size:
-            return column.name, f"size {names[-1][:SIZE_SHOWN]}"
-        name = next((c.name for c in self.others.values() if c.path == names), ".".join(names))
-        return name, ", ".join(places)
+            return column.name, (OF_SIZE, "size", names[-1][:SIZE_SHOWN])
+        items = [(OF_ITEM, "number", str(part + 1)) for part in location if isinstance(part, int)]
+        return (self.at[names].name if names in self.at else ".".join(names)), (items[0] if items else None)
 
 
 def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]:
@@ -180,8 +184,8 @@ INDEX = re.compile("__index_level_[0-9]+__")
 
 
 def are_taken(names: Sequence[str], is_in_list_form: bool) -> bool:
-    """True for columns that the command knows, an index of pandas among them; a page makes list form of long form with
-    other columns in it."""
+    """True for columns that the command knows, an index of pandas among them; long form with other columns is read as a
+    table of cells, in which `20A` and `4/5` are lists."""
     known = {AXIS, *COLUMNS.phases, *(COLUMNS.others if is_in_list_form else ())}
     given = {name for place, name in enumerate(names) if not INDEX.fullmatch(name) and (place or name)}
     return {AXIS, "torque_Nm"} <= given <= known

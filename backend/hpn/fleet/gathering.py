@@ -1,9 +1,7 @@
-"""From rows of tables to axes in list form: phases of long form are gathered, and the other table's columns joined."""
+"""From rows of tables to axes in list form: phases of long form are gathered."""
 
 from bisect import bisect_left
-from collections import deque
 from collections.abc import Iterator, Sequence
-from itertools import islice
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -12,28 +10,19 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from hpn.fleet.axes import BoolArray, IntArray
-from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.tables import TOO_LONG, Batch, Fault, Table, joined
+from hpn.fleet.columns import AXIS, COLUMNS, is_list
+from hpn.fleet.faults import Fault, of_phase
+from hpn.fleet.tables import TOO_LONG, Batch, Table, joined
 from hpn.words.fields import MAXIMUM_PHASES
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Sentence
 
-WINDOW = 100_000
-"""Axes up to which one that is missing from a table is looked for further on."""
-
-BROKEN_BEFORE = N_("the line before can’t be read, and may belong to this axis")
-NOT_BESIDE = N_("is missing from the table of --axes, or not in the order of the phases")
-NO_PHASES = N_("has no phases in INPUT")
+BROKEN_BEFORE = Sentence(N_("the line before can’t be read, and may belong to this axis"))
+DIFFERS = Sentence(N_("must stand in the first row of an axis, or be the same in all of its rows"))
 
 
-def axes_of(table: Table, others: Table | None = None) -> Iterator[Batch]:
-    """Axes of a table in list form, some at a time, with their columns of the other table."""
-    axes = table.batches() if table.is_in_list_form else _gathered(_with_axes(table.batches()))
-    return axes if others is None else _with_others(axes, _no_axes(table), others)
-
-
-def _no_axes(table: Table) -> pa.Table:
-    kinds = {name: table.axis_type if name == AXIS else COLUMNS.all[name].type for name in table.names}
-    return pa.schema(list(kinds.items())).empty_table()
+def axes_of(table: Table) -> Iterator[Batch]:
+    """Axes of a table in list form, some at a time."""
+    return table.batches() if table.is_in_list_form else _gathered(_with_axes(table.batches()))
 
 
 def slices(axes: Batch, most: int) -> Iterator[Batch]:
@@ -80,7 +69,7 @@ def _filled(batch: Batch, before: _Last) -> tuple[Batch, _Last]:
     last = _Last(axis[count - 1].as_py(), bool(broken) and broken[-1] == count - 1)
     if not broken and not suspected:
         return batch, last
-    faults = [*batch.faults, *(Fault(row, AXIS, BROKEN_BEFORE) for row in suspected)]
+    faults = [*batch.faults, *(Fault(row, AXIS, BROKEN_BEFORE, "row_broken") for row in suspected)]
     return Batch(batch.rows.set_column(batch.rows.column_names.index(AXIS), AXIS, axis), faults), last
 
 
@@ -120,148 +109,48 @@ def _shortened(batch: Batch, starts: IntArray) -> tuple[Batch, IntArray]:
 
 
 def _listed(batch: Batch, starts: IntArray) -> Batch:
-    """Axes whose phases begin at rows; the columns of the phases become lists."""
+    """Axes whose phases begin at rows: the columns of the phases become lists, of others the first row counts."""
     batch, starts = _shortened(batch, starts)
-    rows = batch.rows
+    rows, first = batch.rows, pa.array(starts)
     ends = pa.array(np.append(starts, rows.num_rows).astype(np.int32))
     columns = [
-        rows[name].take(pa.array(starts))
-        if name == AXIS
-        else pa.ListArray.from_arrays(ends, rows[name].combine_chunks())
+        pa.ListArray.from_arrays(ends, rows[name].combine_chunks())
+        if name in COLUMNS.phases
+        else rows[name].take(first)
         for name in rows.column_names
     ]
-    faults, given = [], sorted(set(batch.faults))
-    places = np.searchsorted(starts, [fault.row for fault in given], side="right") - 1
-    for fault, place, start in zip(given, places.tolist(), starts[places].tolist(), strict=True):
-        number = fault.row - start + 1
-        if (fault.column, fault.reason) != (AXIS, TOO_LONG):
-            faults.append(Fault(place, fault.column, f"phase {number}: {fault.reason}"))
-        elif number == 1:  # the name is that of all its phases
-            faults.append(Fault(place, AXIS, TOO_LONG))
+    faults = [*_placed(batch.faults, starts), *_differing(rows, starts)]
     return Batch(pa.Table.from_arrays(columns, names=rows.column_names), faults)
 
 
-# --- The other columns ------------------------------------------------------------------------------------------------
+def _placed(faults: Sequence[Fault], starts: IntArray) -> Iterator[Fault]:
+    """Faults of rows as those of the axes that begin at some of them, each once."""
+    given = {(fault.row, fault.column, fault.reason.text): fault for fault in faults}
+    for _, fault in sorted(given.items()):
+        place = int(np.searchsorted(starts, fault.row, side="right")) - 1
+        number = fault.row - int(starts[place]) + 1
+        if (fault.column, fault.reason) != (AXIS, TOO_LONG):
+            yield fault._replace(row=place, reason=of_phase(number, fault.reason))
+        elif number == 1:  # the name is that of all its phases
+            yield fault._replace(row=place)
 
 
-def _with_others(axes: Iterator[Batch], no_axes: pa.Table, others: Table) -> Iterator[Batch]:
-    """Axes with their other columns; both tables have them in one order, and one that a table lacks is a fault."""
-    ahead = _Ahead(others)
-    for batch in axes:
-        left, right = _matched(_texts(batch.rows[AXIS]), ahead)
-        taken = ahead.taken(max((place + 1 for place in right if place is not None), default=0))
-        yield _beside(batch, taken, left, right)
-    for batch in ahead.rest():
-        count = batch.rows.num_rows
-        yield _beside(Batch(no_axes), batch, [None] * count, range(count))
+def _differing(rows: pa.Table, starts: IntArray) -> Iterator[Fault]:
+    """Faults of axes with two values of one input."""
+    axis_of = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, rows.num_rows)))
+    for name in rows.column_names:
+        if name == AXIS or name in COLUMNS.phases or rows[name].null_count == rows.num_rows:
+            continue
+        column = rows[name].combine_chunks()
+        codes = _codes(column)
+        other = np.asarray(pc.is_valid(column)) & (codes != codes[starts[axis_of]])
+        yield from (Fault(int(place), name, DIFFERS, "differs") for place in np.unique(axis_of[other]))
 
 
-class _Ahead:
-    """The rows of a table that have not been taken, as far as they were looked at."""
-
-    def __init__(self, table: Table) -> None:
-        self._batches = table.batches()
-        self._held = Batch(table.empty)
-
-    def _read_up_to(self, count: int) -> None:
-        held = [self._held]
-        while sum(batch.rows.num_rows for batch in held) < count and (more := next(self._batches, None)) is not None:
-            held.append(more)
-        self._held = joined(held) if len(held) > 1 else self._held
-
-    def names(self, count: int) -> pa.Array:
-        """The axes of the next rows as text, fewer at the end."""
-        self._read_up_to(count)
-        return _texts(self._held.rows[AXIS].slice(0, count))
-
-    def each_name(self) -> Iterator[str | None]:
-        """The axes of the rows one by one; they stay the next ones."""
-        given = 0
-        while given < len(self.names(given + 1)):
-            more = _texts(self._held.rows[AXIS].slice(given)).to_pylist()
-            given += len(more)
-            yield from more
-
-    def taken(self, count: int) -> Batch:
-        """The next rows, which are gone from here."""
-        held = self._held
-        self._held = held.between(count, held.rows.num_rows)
-        return held.between(0, count)
-
-    def rest(self) -> Iterator[Batch]:
-        """All rows that are left."""
-        yield self._held
-        yield from self._batches
-
-
-def _texts(column: pa.ChunkedArray) -> pa.Array:
-    """Axes as text, which those of any table can be compared as."""
-    return pa.chunked_array([chunk.cast(pa.string()) for chunk in column.chunks], pa.string()).combine_chunks()
-
-
-Places = Sequence[int | None]
-
-
-def _matched(axes: pa.Array, ahead: _Ahead) -> tuple[Places, Places]:
-    """Places in both tables, one beside the other; None where one lacks what the other has in this order."""
-    if ahead.names(len(axes)).equals(axes):
-        return range(len(axes)), range(len(axes))
-    left, right, done = list[int | None](), list[int | None](), 0
-    for axis, place in enumerate(_places(axes, ahead.each_name())):
-        alone = range(done, done if place is None else place)
-        left += [*(None for _ in alone), axis]
-        right += [*alone, place]
-        done = done if place is None else place + 1
-    return left, right
-
-
-def _places(axes: pa.Array, others: Iterator[str | None]) -> Iterator[int | None]:
-    """Place of each axis in the other table behind the one before, up to WINDOW further on; None where there is none.
-
-    One after another: the place of an axis depends on those before it alone.
-    """
-    where: dict[str | None, deque[int]] = {}
-    read, done = 0, 0
-    for axis in axes.to_pylist():
-        for other in islice(others, done + WINDOW - read):
-            where.setdefault(other, deque()).append(read)
-            read += 1
-        own = where.get(axis, deque())
-        while own and own[0] < done:
-            own.popleft()
-        yield own[0] if own else None
-        done = own[0] + 1 if own else done
-
-
-def _beside(axes: Batch, others: Batch, left: Places, right: Places) -> Batch:
-    """Axes with their other columns; one that a table lacks is a fault."""
-    rows, beside = axes.rows.take(pa.array(left, pa.int64())), others.rows.take(pa.array(right, pa.int64()))
-    faults = [Fault(row, AXIS, NOT_BESIDE) for row, place in enumerate(right) if place is None]  # the first to be read
-    faults += [Fault(row, AXIS, NO_PHASES) for row, place in enumerate(left) if place is None]
-    for places, given in ((left, axes.faults), (right, others.faults)):
-        at = {row: place for place, row in enumerate(places)} if given else {}
-        faults += [fault._replace(row=at[fault.row]) for fault in given if fault.row in at]
-    if any(place is None for place in left):
-        axis = pc.coalesce(rows[AXIS], _as_type(beside[AXIS], rows[AXIS].type))
-        rows = rows.set_column(rows.column_names.index(AXIS), AXIS, axis)
-    for name in beside.column_names:
-        if name != AXIS:
-            rows = rows.append_column(name, beside[name])
-    return Batch(rows, faults)
-
-
-def _as_type(axis: pa.ChunkedArray, wanted: pa.DataType) -> pa.ChunkedArray:
-    """Axes of the other table in the type of the phases; null where one can't be of that type."""
-    if axis.type.equals(wanted):
-        return axis
-    try:
-        return axis.cast(wanted)
-    except pa.ArrowException:
-        return pa.chunked_array([_one_as_type(cell, wanted) for cell in axis], wanted)
-
-
-def _one_as_type(axis: pa.Scalar, wanted: pa.DataType) -> pa.Array:
-    try:
-        return pa.array([axis.cast(wanted).as_py()], wanted)
-    except pa.ArrowException:
-        return pa.nulls(1, wanted)
+def _codes(column: pa.Array) -> IntArray:
+    """A number for each cell, the same for the same cells."""
+    if is_list(column.type):  # Arrow compares no lists
+        numbers: dict[Any, int] = {}
+        cells = (cell and tuple(cell) for cell in column.to_pylist())
+        return np.array([numbers.setdefault(cell, len(numbers)) for cell in cells], np.intp)
+    return np.asarray(pc.fill_null(column.dictionary_encode().indices, -1)).astype(np.intp)

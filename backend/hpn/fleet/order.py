@@ -1,4 +1,4 @@
-"""Order of a fleet: the tables to read and the files to write, and whether their paths can be used.
+"""Order of a fleet: the table to read and the files to write, and whether their paths can be used.
 
 Nothing of Arrow is imported by this module: a service makes orders, and a process beside it carries them out.
 """
@@ -15,13 +15,19 @@ ANSWERED_IN = {
     ".parquet": ".parquet",
     ".arrow": ".arrow",
     ".csv": ".csv",
-    ".ndjson": ".ndjson",
     ".arrows": ".arrow",
     ".feather": ".arrow",
-    ".jsonl": ".ndjson",
     ".csv.gz": ".csv",
 }
 """Suffixes of tables that are read, and of the files that they are answered in, which are those that are written."""
+
+LINES = (".ndjson", ".jsonl")
+LINES_GONE = (
+    "tables in lines of JSON are gone: use Parquet, Arrow or CSV; POST /api/v1/select/batch takes applications in lines"
+)
+TWO_GONE = "is gone: one table has all columns, in long form in the first row of an axis or the same in all of its rows"
+MOST_AXES, MOST_PHASES = 10_000, 200_000
+"""Axes of a machine, and phases of all of them."""
 
 UTF16_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 UNREADABLE = "this user may not read it; see its permissions"
@@ -33,11 +39,10 @@ class FleetError(MendableError):
 
 @dataclass(frozen=True)
 class Order:
-    """The tables to read, and the files to write."""
+    """The table to read, and the files to write."""
 
     axes: Path
     answers: Path
-    requirements: Path | None = None
     candidates: Path | None = None
     rejected: Path | None = None
     ignored: tuple[str, ...] = ()
@@ -49,26 +54,22 @@ class Order:
         named = {"candidates": self.candidates, "rejected": self.rejected, "answers": self.answers}
         return {kind: path for kind, path in named.items() if path is not None}
 
-    @property
-    def tables(self) -> list[Path]:
-        """Files to read."""
-        return [path for path in (self.axes, self.requirements) if path is not None]
-
     def require_usable(self) -> None:
         """Raise FleetError where a file would be written over, or could not be read or written."""
-        for path in self.tables:
-            if status_of(path) is not None and not os.access(path, os.R_OK, effective_ids=True):
-                raise FleetError(f"{path}: {UNREADABLE}")
+        if status_of(self.axes) is not None and not os.access(self.axes, os.R_OK, effective_ids=True):
+            raise FleetError(f"{self.axes}: {UNREADABLE}")
         written = list(self.targets.values())
         for place, path in enumerate(written):
             format_of(path)
             require_writable(path)
-            if path.resolve() in [other.resolve() for other in (*self.tables, *written[:place])]:
+            if path.resolve() in [other.resolve() for other in (self.axes, *written[:place])]:
                 raise FleetError(f"{path}: is named twice")
 
 
 def suffix_of(path: Path) -> str | None:
-    """Suffix of a table that is read."""
+    """Suffix of a table that is read; FleetError for lines of JSON."""
+    if path.name.endswith(LINES):
+        raise FleetError(f"{path}: {LINES_GONE}")
     return next((suffix for suffix in ANSWERED_IN if path.name.endswith(suffix)), None)
 
 

@@ -1,6 +1,6 @@
 """From a table of axes in list form to their answers: a row for each axis, and a row for each fault."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,8 +8,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from hpn.application import Application, InputError
-from hpn.application.faults import REQUIRED, faults_of
+from hpn.application import Application, InputError, Location
+from hpn.application.faults import REQUIRED, sentences_of
 from hpn.catalogue import Catalogue
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.candidates import Candidate, Reserve, candidates_of
@@ -17,19 +17,25 @@ from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
 from hpn.fleet.axes import Axes, BoolArray, IntArray, cells_of
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.tables import Batch, Fault
+from hpn.fleet.faults import Fault, kept, text_of
+from hpn.fleet.tables import Batch
 from hpn.physics.equations import FloatArray
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Sentence
 
 MOST_FAULTS = 20
 """Faults that are listed of one axis."""
 
-DISAGREED = N_("is rejected by the rules for columns but accepted for a single axis; please report it with this axis")
+DISAGREED = Sentence(
+    N_("is rejected by the rules for columns but accepted for a single axis; please report it with this axis")
+)
 """Reason of a row on which both disagree, a fault of the service that ends no fleet."""
 
 
-ROW = "row"
-"""Column beside those of the faults and candidates: the row of their axis among the answers that they come with."""
+LENGTHS = N_("has {found} phases where torque_Nm has {count}")
+
+ROW, FAULTS = "row", "faults"
+"""Columns that no file has: of faults and candidates the row of their axis among the answers that they come with; of
+answers the reasons of an axis that is rejected, as they are kept."""
 
 
 def answer_fields(axis: pa.DataType) -> pa.Schema:
@@ -48,17 +54,27 @@ def answer_fields(axis: pa.DataType) -> pa.Schema:
             ("runner_up", pa.string()),
             ("average_torque_Nm", pa.float64()),
             ("error", pa.string()),
+            (FAULTS, pa.string()),
         ]
     )
 
 
 def rejected_fields(axis: pa.DataType) -> pa.Schema:
     """Columns of the faults, with the row of their axis."""
-    return pa.schema([(ROW, pa.int64()), (AXIS, axis), ("column", pa.string()), ("reason", pa.string())])
+    return pa.schema([(ROW, pa.int64()), (AXIS, axis), *((name, pa.string()) for name in ("column", "code", "reason"))])
 
 
-def outcome(batch: Batch, catalogue: Catalogue, *, with_candidates: bool = False) -> dict[str, pa.Table]:
-    """Answers to axes, their faults, and their candidates where they are wanted, by kind."""
+def outcome(
+    batch: Batch,
+    catalogue: Catalogue,
+    *,
+    with_candidates: bool = False,
+    placed: Callable[[Fault], Fault] = lambda fault: fault,
+) -> dict[str, pa.Table]:
+    """Answers to axes, their faults, and their candidates where they are wanted, by kind.
+
+    `placed` says where in a table of the caller a fault is.
+    """
     axis, count = batch.rows[AXIS], batch.rows.num_rows
     is_faulty = np.zeros(count, np.bool_)
     is_faulty[[fault.row for fault in batch.faults]] = True
@@ -71,7 +87,7 @@ def outcome(batch: Batch, catalogue: Catalogue, *, with_candidates: bool = False
             candidates.add(evaluation, places)
     is_sound = np.zeros(count, np.bool_)
     is_sound[axes.places] = True
-    faults = _all_faults(batch, is_sound, catalogue)
+    faults = [placed(fault) for fault in _all_faults(batch, is_sound, catalogue)]
     found = {"answers": answers.table(axis, faults), "rejected": _rejected(axis, faults)}
     return found | ({"candidates": candidates.table(axis)} if with_candidates else {})
 
@@ -126,7 +142,7 @@ class _Answers:
             pa.array(self.suitable, mask=self.suitable < 0),
             _named(self.runner_up, self.designations),
             _finite(self.average_torque_Nm),
-            _errors(len(self.suitable), faults),
+            *_reasons(len(self.suitable), faults),
         ]
         return pa.Table.from_arrays(columns, schema=answer_fields(axis.type))
 
@@ -152,17 +168,22 @@ def _finite(values: FloatArray) -> pa.Array:
 def _rejected(axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
     """A row for each fault."""
     rows = pa.array([fault.row for fault in faults], pa.int64())
-    texts = [[fault.column for fault in faults], [fault.reason for fault in faults]]
+    told = [(fault.column, fault.code, fault.reason.text) for fault in faults]
+    texts = zip(*told, strict=True) if told else [(), (), ()]
     columns = [rows, axis.take(rows), *(pa.array(values, pa.string()) for values in texts)]
     return pa.Table.from_arrays(columns, schema=rejected_fields(axis.type))
 
 
-def _errors(count: int, faults: Sequence[Fault]) -> pa.Array:
-    """Faults of each axis in one text; null where there are none."""
-    texts: list[list[str]] = [[] for _ in range(count)] if faults else []
+def _reasons(count: int, faults: Sequence[Fault]) -> tuple[pa.Array, pa.Array]:
+    """Faults of each axis in one text, and as they are kept; null where there are none."""
+    found = dict[int, list[Fault]]()
     for fault in faults:
-        texts[fault.row].append(f"{fault.column}: {fault.reason}")
-    return pa.array(["; ".join(lines) or None for lines in texts] if faults else [None] * count, pa.string())
+        found.setdefault(fault.row, []).append(fault)
+    texts: list[str | None] = [None] * count
+    cells = texts.copy()
+    for row, own in found.items():
+        texts[row], cells[row] = text_of(own), kept(own)
+    return pa.array(texts, pa.string()), pa.array(cells, pa.string())
 
 
 def _all_faults(batch: Batch, is_sound: BoolArray, catalogue: Catalogue) -> list[Fault]:
@@ -177,7 +198,7 @@ def _all_faults(batch: Batch, is_sound: BoolArray, catalogue: Catalogue) -> list
 
 def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fault]:
     """Faults of the lists, or else those that the models or the selection find."""
-    faults = [] if cells.get(AXIS) is not None else [Fault(row, AXIS, REQUIRED)]
+    faults = [] if cells.get(AXIS) is not None else [Fault(row, AXIS, Sentence(REQUIRED), "missing")]
     if found := faults + [Fault(row, *fault) for fault in _faults_of_lists(cells)]:
         return found
     try:
@@ -185,23 +206,26 @@ def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fau
         gears_for(application, catalogue)
         with_listed_motor(application, catalogue)
     except (ValidationError, InputError) as error:
-        return [_located(row, tuple(location), text) for location, text, _ in faults_of(error)]
-    return [Fault(row, AXIS, DISAGREED)]
+        return [_located(row, location, sentence, code) for location, sentence, code in sentences_of(error)]
+    return [Fault(row, AXIS, DISAGREED, "invalid")]
 
 
-def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, str]]:
     count = len(cells.get("torque_Nm") or ())
     for name, column in COLUMNS.phases.items():
         values = cells.get(name)
         if values is None and column.required:
-            yield name, REQUIRED
+            yield name, Sentence(REQUIRED), "missing"
         elif values is not None and len(values) != count:
-            yield name, f"has {len(values)} phases where torque_Nm has {count}"
+            yield name, Sentence(LENGTHS, {"found": str(len(values)), "count": str(count)}), "list_length"
 
 
-def _located(row: int, location: tuple[str | int, ...], text: str) -> Fault:
+def _located(row: int, location: Location, sentence: Sentence, code: str) -> Fault:
     column, place = COLUMNS.column_at(location)
-    return Fault(row, column, f"{place}: {text}" if place else text)
+    if place:
+        template, name, value = place
+        sentence = Sentence(template, {name: value, "reason": sentence})
+    return Fault(row, column, sentence, code)
 
 
 # --- Candidates -------------------------------------------------------------------------------------------------------

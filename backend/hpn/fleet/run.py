@@ -1,4 +1,4 @@
-"""Sizing a fleet: tables are read once, their axes worked on by threads or a cluster, and the answers written."""
+"""Sizing a fleet: its table is read once, their axes worked on by threads or a cluster, and the answers written."""
 
 import ctypes
 import fcntl
@@ -16,7 +16,7 @@ import pyarrow as pa
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.gathering import axes_of, slices
-from hpn.fleet.opened import open_tables
+from hpn.fleet.opened import open_axes
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.outcome import outcome
 from hpn.fleet.tables import Batch, Progress
@@ -33,7 +33,7 @@ Engine = Callable[[Size, Iterator[Batch]], Iterator[Outcome]]
 Watch = Callable[[Progress], None]
 """Takes how much has been read, whenever some axes are done."""
 
-Use = Callable[[Path], None]
+Use = Callable[[Iterator[pa.Table]], None]
 """Takes the answers when they are whole; an error of it keeps every file from its name."""
 
 
@@ -97,12 +97,11 @@ def size_fleet(
     takes the columns that are ignored though nobody asked for that. Raises FleetError for input that can't be used.
     """
     order.require_usable()
-    table, beside = open_tables(order)
-    for each in filter(None, (table, beside)):
-        for name in each.ignored[len(order.ignored) :]:
-            note_ignored(each.path, name)
+    table = open_axes(order.axes, order.ignored)
+    for name in table.ignored[len(order.ignored) :]:
+        note_ignored(table.path, name)
     most = SLICE_AXES if order.candidates is None else SLICE_WITH_CANDIDATES
-    batches = (batch for axes in axes_of(table, beside) for batch in slices(axes, most))
+    batches = (batch for axes in axes_of(table) for batch in slices(axes, most))
     size = partial(outcome, catalogue=catalogue, with_candidates=order.candidates is not None)
     with _alone(order.answers), ExitStack() as stack:
         outcomes = Outcomes(order.answers, table.axis_type, list(order.targets))
@@ -116,7 +115,7 @@ def size_fleet(
         for kind, target in order.targets.items():
             stack.callback(unfinished(target).unlink, missing_ok=True)
             rows[kind] = outcomes.write(unfinished(target), kind, axis, torn)
-        use(unfinished(order.answers))
+        use(outcomes.answers(torn))
         for target in order.targets.values():
             os.replace(unfinished(target), target)
     return rows

@@ -40,7 +40,7 @@ def summary_of(answers: Iterable[pa.RecordBatch]) -> Summary:
     bins = np.zeros(BINS, np.int64)
     for batch in answers:
         axes += batch.num_rows
-        rejected += batch.num_rows - batch["error"].null_count
+        rejected += batch["suitable"].null_count
         unsuitable += pc.sum(pc.equal(batch["suitable"], 0)).as_py() or 0
         gears.update(_counted(batch["selected"]))
         checks.update(_counted(batch["governing_check"]))

@@ -14,8 +14,11 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
+from hpn.application.faults import BOUNDS
 from hpn.fleet.columns import AXIS, COLUMNS, INDEX, is_list, is_text
+from hpn.fleet.faults import Fault
 from hpn.fleet.order import FleetError
+from hpn.words.wording import Sentence
 
 BATCH_AXES, BATCH_PHASES = 16_384, 131_072
 """Rows that are read at once, in list and in long form."""
@@ -23,19 +26,7 @@ BATCH_AXES, BATCH_PHASES = 16_384, 131_072
 LONGEST_TEXT = 1000
 """Characters of a text: axes come back in every file, and what is wrong in its reason."""
 
-TOO_LONG = f"must have at most {LONGEST_TEXT} characters"
-
-
-class Fault(NamedTuple):
-    """A cell that can't be taken: the row of its batch, its column, and what would be right."""
-
-    row: int
-    column: str
-    reason: str
-
-    def moved(self, rows: int) -> "Fault":
-        """The fault of a row that stands further down."""
-        return Fault(self.row + rows, self.column, self.reason)
+TOO_LONG = Sentence(BOUNDS["string_too_long"], {"most": str(LONGEST_TEXT)})
 
 
 class Batch(NamedTuple):
@@ -66,10 +57,10 @@ class Progress(NamedTuple):
 
 
 class Table(ABC):
-    """A table of axes in a file. Raises FleetError, which names the file, where it can't be read."""
+    """A table of axes in a file, or in bytes under its name; FleetError names one that can't be read."""
 
-    def __init__(self, path: Path, ignored: Sequence[str] = ()) -> None:
-        self.path = path
+    def __init__(self, path: Path, ignored: Sequence[str] = (), content: bytes | None = None) -> None:
+        self.path, self.content = path, content
         self.ignored = tuple(ignored)
         self.progress = Progress(0, None, "rows")
 
@@ -113,7 +104,7 @@ class Table(ABC):
 
     def batches(self) -> Iterator[Batch]:
         """The rows; a text that is too long is a fault; the name of an axis is cut."""
-        return map(_with_short_texts, self._batches())
+        return map(with_short_texts, self._batches())
 
     @abstractmethod
     def _batches(self) -> Iterator[Batch]:
@@ -145,7 +136,8 @@ class Table(ABC):
         return FleetError(f"{self.path}: {where}can’t be read as {self.path.suffix[1:]}: {what}")
 
 
-def _with_short_texts(batch: Batch) -> Batch:
+def with_short_texts(batch: Batch) -> Batch:
+    """The rows; a text that is too long is a fault."""
     rows, faults = batch.rows, list(batch.faults)
     for place, name in enumerate(batch.rows.column_names):
         column = batch.rows[name]
@@ -158,7 +150,7 @@ def _with_short_texts(batch: Batch) -> Batch:
                 else pc.if_else(pa.array(long), None, column)
             )
             rows = rows.set_column(place, name, cut)
-            faults += (Fault(int(row), name, TOO_LONG) for row in np.flatnonzero(long))
+            faults += (Fault(int(row), name, TOO_LONG, "string_too_long") for row in np.flatnonzero(long))
     return Batch(rows, faults)
 
 

@@ -15,11 +15,12 @@ import pyarrow.types as kinds
 from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, COLUMNS, INDEX, Column, is_list, is_text, plain_type
-from hpn.fleet.tables import Batch, Fault, Progress, Table
+from hpn.fleet.faults import Fault
+from hpn.fleet.tables import Batch, Progress, Table
 from hpn.fleet.uuids import is_uuid, text_of
-from hpn.words.wording import N_
+from hpn.words.wording import N_, Sentence
 
-NOT_WHOLE = N_("must be text or a whole number")
+NOT_WHOLE = Sentence(N_("must be text or a whole number"))
 UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
 """Errors of Arrow for a file that it can't read."""
 
@@ -105,7 +106,7 @@ class TypedTable(Table):
             column = _plain(rows.column(rows.schema.get_field_index(name)))
             if name == AXIS and _may_be_whole(column.type):
                 column, wrong = _whole(column)
-                faults += (Fault(int(row), AXIS, NOT_WHOLE) for row in np.flatnonzero(wrong))
+                faults += (Fault(int(row), AXIS, NOT_WHOLE, "axis_type") for row in np.flatnonzero(wrong))
             columns.append(_cast(column, self.type_of(name)))
         return Batch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
 
@@ -162,7 +163,7 @@ class ParquetTable(TypedTable):
     @cached_property
     def _file(self) -> pq.ParquetFile:
         with self.readable():
-            return pq.ParquetFile(self.path)
+            return pq.ParquetFile(self.path if self.content is None else pa.BufferReader(self.content))
 
     @cached_property
     def _schema(self) -> pa.Schema:
@@ -187,7 +188,7 @@ class ArrowTable(TypedTable):
     """An Arrow file, or a stream."""
 
     def _open(self) -> Any:
-        file = pa.OSFile(str(self.path))
+        file = pa.OSFile(str(self.path)) if self.content is None else pa.BufferReader(self.content)
         is_stream = file.read(len(FILE_MARK)) != FILE_MARK
         file.seek(0)
         return pa.ipc.open_stream(file) if is_stream else pa.ipc.open_file(file)

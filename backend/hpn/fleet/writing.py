@@ -5,13 +5,12 @@ have been read.
 """
 
 import os
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -20,13 +19,11 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, is_text
-from hpn.fleet.gathering import NO_PHASES, NOT_BESIDE
+from hpn.fleet.faults import TWICE, Fault, kept, text_of
 from hpn.fleet.order import format_of
-from hpn.fleet.outcome import FIELDS, ROW
+from hpn.fleet.outcome import FAULTS, FIELDS, ROW
 from hpn.fleet.uuids import is_uuid, uuids_of
-from hpn.words.wording import N_
 
-TWICE = N_("must be unique, with its rows together")
 WHOLE = "^(0|-?[1-9][0-9]{0,17})$"
 
 
@@ -35,31 +32,14 @@ def unfinished(path: Path, suffix: str = "") -> Path:
     return path.with_name(f".unfinished.{path.name}{suffix}")
 
 
-class _NdjsonWriter:
-    """A JSON object in each line."""
-
-    def __init__(self, path: str, schema: pa.Schema) -> None:
-        self._file = pa.OSFile(path, "wb")
-
-    def write_table(self, table: pa.Table) -> None:
-        """Add rows."""
-        for batch in table.to_batches(4096):
-            self._file.write(b"".join(msgspec.json.encode(row) + b"\n" for row in batch.to_pylist()))
-
-    def close(self) -> None:
-        """End the file."""
-        self._file.close()
-
-
 WRITERS: dict[str, Callable[[str, pa.Schema], Any]] = {
     ".parquet": pq.ParquetWriter,
     ".arrow": pa.ipc.new_file,
     ".csv": pacsv.CSVWriter,
-    ".ndjson": _NdjsonWriter,
 }
 
 
-WITHOUT_UUIDS = (".csv", ".ndjson")
+WITHOUT_UUIDS = (".csv",)
 """Formats in which a UUID is text."""
 
 
@@ -102,97 +82,69 @@ class Outcomes:
         for path in self._paths.values():
             path.unlink(missing_ok=True)
 
-    def write(self, path: Path, kind: str, axis: pa.DataType, torn: "Torn") -> int:
+    def write(self, path: Path, kind: str, axis: pa.DataType, torn: frozenset[Any]) -> int:
         """Write the file of a kind with axes of a type, as far as its format has it; gives its number of rows."""
         axis = pa.string() if is_uuid(axis) and format_of(path) in WITHOUT_UUIDS else axis
         schema, rows, seen = FIELDS[kind](axis), 0, set[Any]()
-        schema = schema.remove(schema.get_field_index(ROW)) if ROW in schema.names else schema
+        for name in (ROW, FAULTS):
+            schema = schema.remove(schema.get_field_index(name)) if name in schema.names else schema
         with closing(WRITERS[format_of(path)](str(path), schema)) as writer:
             for answers, table in zip(self._read("answers"), self._read(kind), strict=True):
-                whole = torn.whole(kind, table, answers, seen) if torn else table
+                whole = _whole(kind, table, answers, torn, seen) if torn else table
                 writer.write_table(_typed(whole.select(schema.names), schema))
                 rows += whole.num_rows
         with path.open("rb") as file:
             os.fsync(file.fileno())
         return rows
 
+    def answers(self, torn: frozenset[Any]) -> Iterator[pa.Table]:
+        """The answers, with the reasons of axes that are rejected; names of axes are text."""
+        seen = set[Any]()
+        for table in self._read("answers"):
+            whole = _whole("answers", table, table, torn, seen) if torn else table
+            yield whole.set_column(0, AXIS, whole[AXIS].cast(pa.string()))
+
     def _read(self, kind: str) -> Iterator[pa.Table]:
         with pa.OSFile(str(self._paths[kind])) as file, pa.ipc.open_stream(file) as batches:
             for batch in batches:
                 yield pa.Table.from_batches([batch])
 
-    def torn(self) -> "Torn":
-        """Axes that are there more than once."""
+    def torn(self) -> frozenset[Any]:
+        """Axes that are there more than once, each of which is rejected whole."""
         ascending = np.sort(np.concatenate(self._hashes))
         repeated = set(ascending[1:][ascending[1:] == ascending[:-1]].tolist())
-        errors: dict[Any, list[str]] = {}
+        counts = Counter[Any]()
         for answers in self._read("answers") if repeated else ():
-            for axis, error in zip(answers[AXIS].to_pylist(), answers["error"].to_pylist(), strict=True):
-                if axis is not None and hash(axis) in repeated:
-                    errors.setdefault(axis, []).append(error or "")
-        return Torn.of(errors)
+            counts.update(axis for axis in answers[AXIS].to_pylist() if axis is not None and hash(axis) in repeated)
+        return frozenset(axis for axis, count in counts.items() if count > 1)
 
 
 # --- Axes that are not together ---------------------------------------------------------------------------------------
 
-ALONE = f"{AXIS}: {NO_PHASES}"
 
-
-@dataclass(frozen=True)
-class Torn:
-    """Axes with more than one row: those that are rejected whole, and those that stand elsewhere in the other table."""
-
-    twice: Mapping[Any, bool]
-    """True for those that have phases, False for those of the other table alone."""
-    elsewhere: frozenset[Any]
-
-    @classmethod
-    def of(cls, errors: Mapping[Any, Sequence[str]]) -> "Torn":
-        """Torn axes among some, by the errors of their rows."""
-        twice, elsewhere = {}, set()
-        for axis, found in errors.items():
-            own = [error for error in found if ALONE not in error]
-            if len(own) == 1 and len(found) == 2 and f"{AXIS}: {NOT_BESIDE}" in own[0]:
-                elsewhere.add(axis)
-            elif len(found) > 1:
-                twice[axis] = bool(own)
-        return cls(twice, frozenset(elsewhere))
-
-    def __bool__(self) -> bool:
-        return bool(self.twice or self.elsewhere)
-
-    def whole(self, kind: str, table: pa.Table, answers: pa.Table, seen: set[Any]) -> pa.Table:
-        """Outcome of some axes, with one row for each torn one; those that were seen have had it."""
-        is_twice = np.array([axis in self.twice for axis in answers[AXIS].to_pylist()], np.bool_)
-        kept = np.array(self._kept(answers, seen), np.bool_)
-        if kind == "answers":
-            return _with_error(table, is_twice).filter(pa.array(kept))
-        rows = np.asarray(table[ROW])
-        table = table.filter(pa.array((kept & ~is_twice)[rows]))
-        if kind == "candidates":
-            return table
-        places = pa.array(np.flatnonzero(kept & is_twice))
-        count = len(places)
-        more = [places, answers[AXIS].take(places), pa.array([AXIS] * count), pa.array([TWICE] * count)]
-        return pa.concat_tables([table, pa.Table.from_arrays(more, schema=table.schema)]).sort_by(ROW)
-
-    def _kept(self, answers: pa.Table, seen: set[Any]) -> list[bool]:
-        """True for the rows that stay: one for each axis, where it came first."""
-        kept = []
-        for axis, error in zip(answers[AXIS].to_pylist(), answers["error"].to_pylist(), strict=True):
-            is_alone = ALONE in (error or "")
-            if axis in self.twice:
-                kept.append(axis not in seen and not (is_alone and self.twice[axis]))
-                seen.update([axis] if kept[-1] else [])
-            else:
-                kept.append(not (is_alone and axis in self.elsewhere))
-        return kept
+def _whole(kind: str, table: pa.Table, answers: pa.Table, torn: frozenset[Any], seen: set[Any]) -> pa.Table:
+    """Outcome of some axes, with one row for each torn one; those that were seen have had it."""
+    axes, kept = answers[AXIS].to_pylist(), list[bool]()
+    for axis in axes:
+        kept.append(axis not in seen)
+        seen.update([axis] if axis in torn else [])
+    is_torn, stays = np.array([axis in torn for axis in axes], np.bool_), np.array(kept, np.bool_)
+    if kind == "answers":
+        return _with_error(table, is_torn).filter(pa.array(stays))
+    table = table.filter(pa.array(~is_torn[np.asarray(table[ROW])]))
+    if kind == "candidates":
+        return table
+    places = pa.array(np.flatnonzero(stays & is_torn))
+    texts = ([text] * len(places) for text in (AXIS, "repeated", TWICE.text))
+    more = pa.Table.from_arrays([places, answers[AXIS].take(places), *map(pa.array, texts)], schema=table.schema)
+    return pa.concat_tables([table, more]).sort_by(ROW)
 
 
 def _with_error(answers: pa.Table, is_twice: NDArray[np.bool_]) -> pa.Table:
     """Answers in which a torn axis has an error and nothing else."""
-    columns = [answers[AXIS]]
+    fault = Fault(0, AXIS, TWICE, "repeated")
+    columns, told = [answers[AXIS]], {"error": text_of([fault]), FAULTS: kept([fault])}
     for field in list(answers.schema)[1:]:
-        instead = pa.scalar(f"{AXIS}: {TWICE}" if field.name == "error" else None, field.type)
+        instead = pa.scalar(told.get(field.name), field.type)
         columns.append(pc.if_else(pa.array(is_twice), instead, answers[field.name]))
     return pa.Table.from_arrays(columns, schema=answers.schema)

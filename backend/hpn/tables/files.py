@@ -23,6 +23,7 @@ from hpn.tables.workbooks import MAGIC, OLD_MAGIC, sheets_of
 from hpn.words.wording import N_, Sentence
 
 OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLSX or CSV")
+LINES = N_("objects of JSON are no table of axes: save the table as CSV, XLSX, Parquet or Arrow")
 PARQUET, ARROW, STREAM, GZIP = b"PAR1", b"ARROW1", b"\xff\xff\xff\xff", b"\x1f\x8b"
 MOST_HEAD = 2_000_000
 """Characters in which the header and the first row of a text stand."""
@@ -36,7 +37,7 @@ class Wanted:
     """Table that is wanted of a file: inputs that its columns may hold, its most rows and its longest text, and those
     that are taken as they are.
 
-    Objects of JSON are rows of a table where tables may be taken as they are, else one application.
+    An object of JSON is an application where no tables are taken as they are.
     """
 
     inputs: Inputs
@@ -91,8 +92,6 @@ def _of_gzip(content: bytes, wanted: Wanted) -> Contents:
     except zlib.error:
         raise RefusedError(NO_TEXT) from None
     found = _of_text(tidied(text_of(unpacked)), wanted)
-    if found.suffix not in ("", ".csv"):  # lines of JSON, which are read as they are alone
-        raise RefusedError(NO_TEXT)
     return replace(found, suffix=".csv.gz") if found.suffix else found
 
 
@@ -106,9 +105,7 @@ def _of_text(text: str, wanted: Wanted) -> Contents:
             return Contents({"": tuple(grids_of(text, wanted.most_rows, wanted.most_characters))}, text)
         if wanted.takes is None:
             return Contents(text=text, is_application=True)
-        from hpn.tables import records
-
-        return _of_rows(*records.objects(text, wanted.takes))
+        raise RefusedError(LINES)
     except RefusedError as refused:
         return Contents(text=text if len(text) <= wanted.most_characters else "", problem=refused.sentence)
 

@@ -1,4 +1,4 @@
-"""From Parquet, Arrow and NDJSON to the cells of a table. Arrow is imported by this module.
+"""From Parquet and Arrow to the cells of a table. Arrow is imported by this module.
 
 The size of a table is checked as the file states it, and again as it was read: the file may be wrong.
 """
@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from itertools import chain
 from typing import Any
 
-import msgspec
 import pyarrow as pa
 import pyarrow.dataset as datasets
 import pyarrow.parquet as pq
@@ -24,7 +23,7 @@ LARGEST = 1e300
 MOST_BYTES = 16 * MOST_CHARACTERS
 """Of the columns of a table in memory: cells, and what they say."""
 
-UNREADABLE = N_("the file can’t be read as Parquet, Arrow or NDJSON: save the table as CSV or XLSX")
+UNREADABLE = N_("the file can’t be read as Parquet or Arrow: save the table as CSV or XLSX")
 TOO_LONG = N_("the columns of the table take more than {most} MB: leave out those that are not needed")
 
 Found = tuple[str, Grid | None]
@@ -101,33 +100,6 @@ def _grid(table: pa.Table) -> Grid:
     _require_short([table.nbytes])
     rows = (row.values() for batch in table.to_batches(1000) for row in batch.to_pylist())
     return _cells(table.column_names, rows)
-
-
-def objects(text: str, takes: Takes) -> Found:
-    """A table of JSON objects, one in each line; what is none is taken as it is, and refused by its line.
-
-    No more rows are kept than a table may have: one that is taken as it is has far more.
-    """
-    rows, names, count = list[dict[str, Any]](), dict[str, None](), 0
-    try:
-        for line in filter(str.strip, text.split("\n")):
-            row = msgspec.json.decode(line, type=dict[str, Any])
-            if any(isinstance(value, list) for value in row.values()):
-                return ".ndjson", None
-            names.update(dict.fromkeys(row))
-            count += 1
-            if count * len(names) <= MOST_CELLS:
-                rows.append(row)
-            elif not takes(list(names), False):
-                raise too_many_cells()
-    except RefusedError:
-        raise
-    except (ValueError, RecursionError):
-        return ".ndjson", None
-    if takes(list(names), False):
-        return ".ndjson", None
-    _require_few(count, len(names))
-    return "", _cells(list(names), ([row.get(name) for name in names] for row in rows))
 
 
 def _cells(names: Sequence[str], rows: Iterable[Iterable[Any]]) -> Grid:

@@ -11,17 +11,17 @@ import logging
 import os
 import shutil
 import tempfile
-from collections.abc import AsyncIterator, Iterator, Mapping
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 from starlette.datastructures import State
 from starlette.requests import Request
 
-from hpn.fleet.beside import Sized, sized
+from hpn.fleet.beside import sized
 from hpn.fleet.order import ANSWERED_IN, Order, suffix_of, wrong_encoding
 from hpn.web import spool
 from hpn.web.door.beside import Bounds, EndedError
@@ -29,6 +29,7 @@ from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 
+T = TypeVar("T")
 Kind = Literal["answers", "rejected", "candidates"]
 
 MARKS = {".parquet": (b"PAR1", b"PAR1"), ".csv.gz": (b"\x1f\x8b", b"")} | dict.fromkeys(
@@ -53,12 +54,10 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Tables:
-    """Tables of a fleet in its folder, under names of the service, and what the caller calls them."""
+    """Table of a fleet in its folder, under a name of the service, and what the caller calls it."""
 
     input: Path
-    axes: Path | None = None
     input_name: str = "input"
-    axes_name: str = "axes"
     ignored: tuple[str, ...] = ()
     """Columns that are left out."""
 
@@ -129,26 +128,23 @@ def bounds_of(settings: Settings) -> Bounds:
     return Bounds(settings.fleet_memory_bytes, 2 * settings.fleet_seconds)
 
 
-async def size_fleet(request: Request, tables: Tables, *, candidates: bool = False, suffix: str | None = None) -> Files:
-    """Size the axes of tables in a workplace; gives files in the input's format or that of a suffix.
+async def size_fleet(request: Request, tables: Tables, *, candidates: bool = False) -> Files:
+    """Size the axes of a table in a workplace; gives files in the input's format.
 
-    Raises Problem 422 for tables that can't be used, 413 for what takes too much, 503 where too many others wait or for
-    what takes too long, the wait for its turn included. A client that leaves ends the work. The body of the request has
-    been read: a place that was taken before would be free to take, by a body that drips.
+    Raises Problem 422 for a table that can't be used, 413 for what takes too much, 503 where too many others wait or
+    for what takes too long, the wait for its turn included. A client that leaves ends the work. The body of the request
+    has been read: a place that was taken before would be free to take, by a body that drips.
     """
     settings: Settings = request.app.state.settings
     pool = pool_of(request, "fleets")
-    await pool.run(_require_tables, tables)
+    await pool.run(_require_table, tables)
     kinds: tuple[Kind, ...] = ("answers", "rejected", "candidates") if candidates else ("answers", "rejected")
-    ending = suffix or ANSWERED_IN[suffix_of(tables.input) or ""]
+    ending = ANSWERED_IN[suffix_of(tables.input) or ""]
     files = {kind: tables.input.with_name(f"{kind}{ending}") for kind in kinds}
-    try:
-        with pool.place():
-            async with asyncio.timeout(settings.fleet_seconds):
-                found = await while_present(request, _sized(request, tables, files))
-    except TimeoutError:
-        text = f"the table was not sized within {settings.fleet_seconds:g} s; send fewer axes at once"
-        raise Problem.later(text, RETRY_SECONDS) from None
+    written = {str(kind): path for kind, path in files.items()}
+    order = Order(tables.input, ignored=tables.ignored, **written)
+    work = partial(sized, order, request.app.state.catalogue, settings.fleet_workers)
+    found = await worked(request, work, tables.input.parent)
     if found.refusal:
         raise Problem(422, _in_words_of_the_caller(found.refusal, tables))
     if found.code:
@@ -156,19 +152,29 @@ async def size_fleet(request: Request, tables: Tables, *, candidates: bool = Fal
     return Files(files, found.ignored)
 
 
-async def _sized(request: Request, tables: Tables, files: Mapping[Kind, Path]) -> Sized:
-    """End of a fleet; Problem 413 where it takes too much memory or its files too much of the disk."""
+async def worked(request: Request, work: Callable[[], T], folder: Path | None = None) -> T:
+    """Result of work in a process that sizes fleets, whose files may take so much in a folder.
+
+    Raises Problem as `size_fleet` says.
+    """
     settings: Settings = request.app.state.settings
-    written = {str(kind): path for kind, path in files.items()}
-    order = Order(tables.input, requirements=tables.axes, ignored=tables.ignored, **written)
-    pool = pool_of(request, "fleets")
+    try:
+        with pool_of(request, "fleets").place():
+            async with asyncio.timeout(settings.fleet_seconds):
+                return await while_present(request, _in_turn(request, work, folder))
+    except TimeoutError:
+        text = f"the table was not sized within {settings.fleet_seconds:g} s; send fewer axes at once"
+        raise Problem.later(text, RETRY_SECONDS) from None
+
+
+async def _in_turn(request: Request, call: Callable[[], T], folder: Path | None) -> T:
+    settings, pool = request.app.state.settings, pool_of(request, "fleets")
     async with pool.turn:
-        call = pool.call_beside(partial(sized, order, request.app.state.catalogue, settings.fleet_workers))
-        work = asyncio.create_task(call)
+        work = asyncio.create_task(pool.call_beside(call))
         try:
             while not work.done():
                 await asyncio.wait({work}, timeout=WATCH_SECONDS)
-                if _size_of(tables.input.parent) > (most := settings.maximum_spool_bytes):
+                if folder and _size_of(folder) > (most := settings.maximum_spool_bytes):
                     raise Problem(413, f"what comes out takes more than {most} bytes; send fewer axes")
             return work.result()
         except EndedError as error:
@@ -190,8 +196,7 @@ def _too_much(error: EndedError, settings: Settings) -> Problem:
 
 def _in_words_of_the_caller(text: str, tables: Tables) -> str:
     """A refusal with the caller's names of the files."""
-    text = text.replace(str(tables.input), tables.input_name).replace("--axes", tables.axes_name)
-    text = text.replace(str(tables.axes), tables.axes_name) if tables.axes else text
+    text = text.replace(str(tables.input), tables.input_name)
     return text if len(text) <= DETAIL_LENGTH else f"{text[:DETAIL_LENGTH]}…"
 
 
@@ -203,23 +208,22 @@ def _size_of(folder: Path) -> int:
     return size
 
 
-def _require_tables(tables: Tables) -> None:
+def _require_table(tables: Tables) -> None:
     """Raise Problem 422 for a file that a look shows to be no table of axes: no process is started for it."""
-    names = {tables.input: tables.input_name} | ({tables.axes: tables.axes_name} if tables.axes else {})
-    for path, name in names.items():
-        suffix = suffix_of(path) or ""
-        size, mark = path.stat().st_size, MARKS.get(suffix)
-        with path.open("rb") as file:
-            head = file.read(HEAD_BYTES if mark is None else len(mark[0]))
-            file.seek(max(size - len(mark[1] if mark else b""), 0))
-            end = file.read()
-        if not size:
-            raise Problem(422, f"{name}: is empty, where a table belongs")
-        is_stream = path.suffix.startswith(".arrow") and head.startswith(STREAM)
-        if mark is not None and (head, end) != mark and not is_stream:
-            text = f"can’t be read as {suffix[1:]}: it does not begin and end as such a file"
-            raise Problem(422, f"{name}: {text}")
-        if mark is None and (said := wrong_encoding(head)):
-            raise Problem(422, f"{name}: {said}")
-        if mark is None and b"axis" not in head:
-            raise Problem(422, f"{name}: column axis is missing")
+    path, name = tables.input, tables.input_name
+    suffix = suffix_of(path) or ""
+    size, mark = path.stat().st_size, MARKS.get(suffix)
+    with path.open("rb") as file:
+        head = file.read(HEAD_BYTES if mark is None else len(mark[0]))
+        file.seek(max(size - len(mark[1] if mark else b""), 0))
+        end = file.read()
+    if not size:
+        raise Problem(422, f"{name}: is empty, where a table belongs")
+    is_stream = path.suffix.startswith(".arrow") and head.startswith(STREAM)
+    if mark is not None and (head, end) != mark and not is_stream:
+        text = f"can’t be read as {suffix[1:]}: it does not begin and end as such a file"
+        raise Problem(422, f"{name}: {text}")
+    if mark is None and (said := wrong_encoding(head)):
+        raise Problem(422, f"{name}: {said}")
+    if mark is None and b"axis" not in head:
+        raise Problem(422, f"{name}: column axis is missing")

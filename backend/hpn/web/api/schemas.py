@@ -52,21 +52,15 @@ def batch_body() -> dict[str, Any]:
 
 
 def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
-    """OpenAPI entry of a fleet's body: a table, or a form with two."""
+    """OpenAPI entry of a fleet's body, a table."""
     table = {
         "type": "string",
         "format": "binary",
-        "description": "Axes in list form, a row for each: `axis`, lists named as the fields of a phase, and the other "
-        "fields of an application by their paths with dots, such as `requirements.life_h`.",
+        "description": "A row for each axis: `axis`, lists named as the fields of a phase, and the other fields of an "
+        "application by their paths with dots, such as `requirements.life_h`. Or a row for each phase, those of an "
+        "axis together: the other columns stand in its first row, or repeat the same value.",
     }
-    form = {  # no model of its own: generators that skip those of forms import it all the same, and Java can't compile
-        "type": "object",
-        "additionalProperties": {"type": "string", "format": "binary"},
-        "description": "`input`: axes in list form, or phases, a row for each, those of an axis together. `axes`, "
-        "where `input` has phases: a row for each axis with its other inputs.",
-    }
-    content = {media_type: {"schema": dict(table)} for media_type in media_types}
-    return {"requestBody": {"required": True, "content": content | {"multipart/form-data": {"schema": form}}}}
+    return {"requestBody": {"required": True, "content": {kind: {"schema": dict(table)} for kind in media_types}}}
 
 
 # --- Responses --------------------------------------------------------------------------------------------------------

@@ -4,19 +4,21 @@ They are made in a process beside the service, which imports this module and non
 """
 
 import io
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.csv as pacsv
-import pyarrow.parquet as pq
 import pyarrow.types as kinds
 import xlsxwriter
 
 from hpn.files.workbook import EveryDigit
-from hpn.fleet.listing import NEAREST, as_parquet
+from hpn.fleet.faults import Reason, reasons_of
+from hpn.fleet.listing import NEAREST
+from hpn.fleet.machine import as_parquet, table_of
+from hpn.fleet.outcome import FAULTS
 from hpn.tables.cells import harmless
-from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.words.reader import Reader
 
 LONGEST_CELL = 32_767
@@ -30,23 +32,21 @@ def file_of(answers: bytes, created: datetime, suffix: str, reader: Reader) -> b
     """
     table = table_of(answers).drop_columns(NEAREST.names)
     if suffix == "parquet":
-        return as_parquet(table)
+        return as_parquet(_told(table, Reader("en")))
     told = _told(table, reader)
     return _csv(told) if suffix == "csv" else _workbook(told, created)
 
 
-def table_of(content: bytes) -> pa.Table:
-    """A table that was kept."""
-    return pq.read_table(io.BytesIO(content))
-
-
 def _told(table: pa.Table, reader: Reader) -> pa.Table:
-    errors = [error and _reasons_in(error, reader) for error in table["error"].to_pylist()]
-    return table.set_column(table.column_names.index("error"), "error", pa.array(errors, pa.string()))
+    """Answers with the reasons of rejected axes as texts; those of an earlier version stay as they are."""
+    if FAULTS not in table.column_names:
+        return table
+    errors = [_reasons_in(reasons_of(cell), reader) for cell in table[FAULTS].to_pylist()]
+    return table.drop_columns(FAULTS).append_column("error", pa.array(errors, pa.string()))
 
 
-def _reasons_in(error: str, reader: Reader) -> str:
-    return "; ".join(f"{column}: {reader.told(reason)}" for column, reason in reasons_of(error))
+def _reasons_in(reasons: Sequence[Reason], reader: Reader) -> str | None:
+    return "; ".join(f"{reason.column}: {reader.told(reason.sentence)}" for reason in reasons) or None
 
 
 def _csv(table: pa.Table) -> bytes:

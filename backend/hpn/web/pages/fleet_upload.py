@@ -1,16 +1,8 @@
 """A table of axes that somebody uploads: taken as it is where `hpn fleet` would take it, else as a table of cells."""
 
-import msgspec
-
 from hpn.fleet.columns import are_taken
 from hpn.tables.files import Wanted
-from hpn.tables.table import Table
 from hpn.web.form.symbols import AXIS_INPUTS
 
 WANTED = Wanted(AXIS_INPUTS, most_rows=50_000, most_characters=4_000_000, takes=are_taken)
 """Most rows and characters of a text whose columns are not named as `hpn fleet` names them."""
-
-
-def lines_of(table: Table) -> bytes:
-    """The axes of a table as NDJSON, which `hpn fleet` reads."""
-    return b"".join(msgspec.json.encode(axis) + b"\n" for axis in table.axes)

@@ -5,10 +5,9 @@
 """
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -17,6 +16,9 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn.catalogue import Catalogue
+from hpn.fleet.beside import read_machine
+from hpn.fleet.faults import Fault
+from hpn.fleet.order import MOST_AXES, MOST_PHASES
 from hpn.store import FleetDraft, NoRoomError, ShareSpentError, StoreUnavailableError
 from hpn.store.fleets import MOST_OF_CALLER
 from hpn.tables.files import Wanted, packed, unpacked
@@ -28,16 +30,24 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, compute_beside, worked
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.uploads import read_parts
-from hpn.web.fleets import Tables, size_fleet, workplace
+from hpn.web.fleets import worked as worked_beside
 from hpn.web.form.symbols import AXIS_INPUTS
-from hpn.web.pages.reading import read
+from hpn.web.pages.reading import work_of
 from hpn.web.pages.rendering import page
 from hpn.web.pages.sized_fleets import ADDRESS
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Quantity, Sentence
 
 NO_ROOM_SECONDS = 3600
 UNAVAILABLE = N_("Machines are temporarily unavailable: try again in a few seconds.")
 NOTHING = N_("choose a file or paste cells into the field")
+TOO_MANY = N_(
+    "The table has {found} axes, and the limit of a page is {most}: size it with the command hpn fleet or POST "
+    "/api/v1/fleet, which have no such limit."
+)
+TOO_LONG = N_(
+    "The axes have {found} phases, and the limit of a page is {most}: size them with the command hpn fleet or POST "
+    "/api/v1/fleet, which have no such limit."
+)
 LARGER = N_("For larger tables use the command hpn fleet or POST /api/v1/fleet, which have no such limit.")
 SHARE_SPENT = N_(
     "Unsaved machines are kept for a day, and {most} of them are yours. Save or delete one on its page, then size "
@@ -67,10 +77,10 @@ class Draft:
 
 
 class Taken(NamedTuple):
-    """A table to be sized: its content, its format, and by axis the rows of a table of cells that it came of."""
+    """Axes to be sized, what is wrong with their cells, and the rows of a table of cells that each came of."""
 
-    content: bytes
-    suffix: str
+    rows: Sequence[Mapping[str, Any]]
+    faults: Sequence[Fault] = ()
     origins: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
@@ -114,10 +124,23 @@ async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
         return Draft(problems=(Sentence(NOTHING),))
     wanted = await compute(request, "pages", _wanted)
     fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
-    reading = await read(request, content, wanted, fields)
-    if reading.suffix:
-        return Draft(fields.get("text", ""), taken=Taken(content, reading.suffix))
-    return await compute(request, "pages", _draft_of, fields, content, reading)
+    found = await compute_beside(
+        request, "files", await compute(request, "pages", work_of, read_machine, content, wanted, fields)
+    )
+    if found.refusal:
+        raise Problem(422, Sentence("{text}", {"text": found.refusal}))
+    _require_few(found.axes, found.phases)
+    if found.reading.suffix:
+        return Draft(fields.get("text", ""), taken=Taken(found.rows, found.faults))
+    return await compute(request, "pages", _draft_of, fields, content, found.reading)
+
+
+def _require_few(axes: int, phases: int) -> None:
+    """Raise Problem 413 for more axes or phases than a machine may have."""
+    for template, count, most in ((TOO_MANY, axes, MOST_AXES), (TOO_LONG, phases, MOST_PHASES)):
+        if count > most:
+            values = {"found": Quantity(count, "", 12), "most": Quantity(most, "", 12)}
+            raise Problem(413, Sentence(template, values))
 
 
 def _wanted() -> Wanted:
@@ -127,14 +150,11 @@ def _wanted() -> Wanted:
 
 
 def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Draft:
-    from hpn.web.pages import fleet_upload
-
     table, problems = reading.table, tuple[Sentence, ...]()
     assert table is not None
     if table.problem:
         problems = (table.problem, *([Sentence(LARGER)] if "most" in table.problem.values else ()))
-    sizes = table.whole and "size" in fields
-    taken = Taken(fleet_upload.lines_of(table), ".ndjson", table.origins) if sizes else None
+    taken = Taken(table.axes, (), table.origins) if table.whole and "size" in fields else None
     carried = packed(content) if reading.sheets else ""
     return Draft(fields.get("text", ""), problems, table, reading.of, carried, reading.sheets, reading.sheet, taken)
 
@@ -158,32 +178,21 @@ async def _sized(request: Request, taken: Taken) -> str:
 
 async def _calculated(request: Request, taken: Taken) -> FleetDraft:
     """Fleet of a table; raises Problem."""
-    async with workplace(request) as folder:
-        axes = folder / f"axes{taken.suffix}"
-        await compute(request, "pages", axes.write_bytes, taken.content)
-        files = await size_fleet(request, Tables(axes, input_name="The table"), suffix=".parquet")
-        answers, catalogue = files.by_kind["answers"], request.app.state.catalogue
-        work = await compute(request, "pages", _listed, axes, answers, catalogue, taken.origins)
-        listing = await compute_beside(request, "files", work)
-        draft: FleetDraft = await compute(request, "pages", _kept, listing, catalogue)
-    return draft
+    catalogue = request.app.state.catalogue
+    work = await compute(request, "pages", _work, taken, catalogue)
+    return await compute(request, "pages", _kept, await worked_beside(request, work), catalogue)
 
 
-def _listed(axes: Path, answers: Path, catalogue: Catalogue, origins: Mapping[str, Sequence[int]]) -> Any:
-    """The work of reading a table again that was sized, with its answers; Problem 413 where these are too many."""
-    from hpn.fleet.listing import kept_listing_of
-    from hpn.web.pages import fleet_result
+def _work(taken: Taken, catalogue: Catalogue) -> Callable[[], Any]:
+    from hpn.fleet.machine import kept_of
 
-    fleet_result.require_few(answers)
-    if origins:
-        fleet_result.name_rows(answers, origins)
-    return partial(kept_listing_of, axes, answers, catalogue)
+    return partial(kept_of, taken.rows, taken.faults, dict(taken.origins), catalogue)
 
 
-def _kept(*arguments: Any) -> Any:
-    from hpn.web.pages import fleet_result
+def _kept(*arguments: Any) -> FleetDraft:
+    from hpn.web.pages.fleet_result import draft_of
 
-    return fleet_result.draft_of(*arguments)
+    return draft_of(*arguments)
 
 
 _WORDS: dict[str, Any] = {"roles": AXIS_INPUTS.by_role}

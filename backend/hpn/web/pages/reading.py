@@ -1,8 +1,9 @@
 """Reading of what somebody gives a page: a file in a process whose memory and time are bounded, a short text here."""
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
+from typing import TypeVar
 
 from starlette.requests import Request
 
@@ -13,6 +14,8 @@ from hpn.web.door.pools import compute, compute_beside
 from hpn.web.door.visit import current
 from hpn.words.patterns import Pattern
 
+T = TypeVar("T")
+
 SHORT_CHARACTERS = 2_000
 """Texts up to which a worker reads at once: whatever they say, that takes some milliseconds."""
 
@@ -21,17 +24,22 @@ _PLACE = Pattern(r"([ru])([0-9]{1,6})", 7)
 
 async def read(request: Request, content: bytes | str, wanted: Wanted, fields: Mapping[str, str]) -> Reading:
     """Reading of a file or a text, by the answers in the fields of a form; raises Problem 413 or 503."""
-    work = await compute(request, "pages", _work, content, wanted, fields)
+    work = await compute(request, "pages", work_of, reading_of, content, wanted, fields)
     if isinstance(content, str) and len(content) <= SHORT_CHARACTERS:
         return await compute(request, "pages", work)
     return await compute_beside(request, "files", work)
 
 
-def _work(content: bytes | str, wanted: Wanted, fields: Mapping[str, str]) -> Callable[[], Reading]:
+def work_of(
+    how: Callable[[bytes | str, Wanted, Choices, Collection[str]], T],
+    content: bytes | str,
+    wanted: Wanted,
+    fields: Mapping[str, str],
+) -> Callable[[], T]:
     """The call that reads. A column without a unit is in that of the wire where the reader sees the same."""
     reader = current()
     assumed = tuple(unit for unit in wanted.inputs.units if reader.measure(unit).same)
-    return partial(reading_of, content, wanted, choices_of(fields), assumed)
+    return partial(how, content, wanted, choices_of(fields), assumed)
 
 
 def choices_of(fields: Mapping[str, str]) -> Choices:

@@ -15,6 +15,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
 from hpn.store import SavedFleet, StoreUnavailableError
 from hpn.web.door.access import admit, key_needed
 from hpn.web.door.bodies import pairs_of, read_form
@@ -22,7 +23,7 @@ from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
-from hpn.web.fleets import Tables, size_fleet, workplace
+from hpn.web.fleets import worked
 from hpn.web.form.labels import FIELDS, TITLE_BLOCK
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, SORTINGS, Chosen, FleetPageView, foremost, weights_of
@@ -88,7 +89,7 @@ def _page(
 ) -> Response:
     from hpn.web.pages import fleet_report, fleet_result
 
-    summary, rows = fleet_result.kept_of(saved)
+    summary, rows = fleet_result.shown_of(saved)
     chosen = Chosen.of(request.query_params)
     found = chosen.out_of(rows)
     part = found[(chosen.part - 1) * ROWS_ON_PAGE : chosen.part * ROWS_ON_PAGE]
@@ -124,13 +125,16 @@ async def _today(request: Request, saved: SavedFleet) -> tuple[list[Any] | None,
     if saved.axes == saved.rejected:
         return [], ""
     try:
-        async with workplace(request) as folder:
-            axes = folder / "axes.parquet"
-            await compute(request, "pages", axes.write_bytes, saved.asked)
-            files = await size_fleet(request, Tables(axes))
-            return await compute(request, "exports", _changes, saved, files.by_kind["answers"]), ""
+        answers = await worked(request, await compute(request, "pages", _again, saved, catalogue))
+        return await compute(request, "exports", _changes, saved, answers), ""
     except Problem as error:
         return None, error.detail
+
+
+def _again(saved: SavedFleet, catalogue: Catalogue) -> Callable[[], Any]:
+    from hpn.fleet.machine import answers_today
+
+    return partial(answers_today, saved.asked, catalogue)
 
 
 def _changes(*arguments: Any) -> Any:

@@ -31,7 +31,6 @@ from hpn.web.form import symbols, ways
 from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.form.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
 from hpn.web.pages import assets
-from hpn.web.pages.fleet_reasons import reasons_of
 from hpn.web.pages.result import preview_of
 from hpn.words import units
 from hpn.words.quantities import GEAR, LISTED, QUANTITIES
@@ -261,7 +260,6 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "inline": _inline,
     "parted": parted,
     "reason": _reason,
-    "reasons": reasons_of,
     "say": _say,
     "shortest_life": shortest_life,
     "stiffness": _stiffness,

@@ -1,4 +1,4 @@
-"""Tables of axes in lines of text, and CSV among them."""
+"""Tables of axes as comma-separated values."""
 
 import csv
 import gzip
@@ -17,9 +17,10 @@ import pyarrow.csv as pacsv
 from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, COLUMNS, INDEX, NUMBER, Column, is_list
+from hpn.fleet.faults import Fault
 from hpn.fleet.order import FleetError
-from hpn.fleet.tables import Batch, Fault, Progress, Table
-from hpn.words.wording import N_
+from hpn.fleet.tables import Batch, Progress, Table
+from hpn.words.wording import N_, Sentence
 
 BLOCK_BYTES = HEAD_BYTES = 8_000_000
 """Lines that are read at once, and the beginning of a file, in which header or first row stand."""
@@ -31,13 +32,17 @@ MOST_BROKEN = 100_000
 """Lines of a block that are no rows; a file with more is no table of axes, and the run ends with that."""
 
 MOST_SHOWN = 60
+Reason = tuple[Sentence, str]
+"""What would be right, and a code for programs."""
+
 OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 BOM = b"\xef\xbb\xbf"
-NO_NUMBER = N_("must be a number with a decimal point, such as 9.3")
-NO_FLAG = N_("must be true or false")
-NO_NUMBERS = N_("must be a JSON list of numbers, such as [40, 32.5]")
-NO_TEXTS = N_('must be a JSON list of texts, such as ["14A", "20A"]')
-NOT_UTF8 = N_("must be UTF-8")
+NO_NUMBER = Sentence(N_("must be a number with a decimal point, such as 9.3")), "float_parsing"
+NO_FLAG = Sentence(N_("must be true or false")), "bool_parsing"
+NO_NUMBERS = Sentence(N_("must be a JSON list of numbers, such as [40, 32.5]")), "list_type"
+NO_TEXTS = Sentence(N_('must be a JSON list of texts, such as ["14A", "20A"]')), "list_type"
+WRONG_LENGTH = N_("the row has {found} cells where the header has {expected}, in {row}")
+NOT_UTF8 = Sentence(N_("must be UTF-8")), "string_unicode"
 QUOTED = re.compile(rb'(?:\A|(?<=[,\r\n]))"[^"]*(?:""[^"]*)*(?:"(?![^,\r\n])|("?))')
 """A cell in quotes; group 1 is there where nothing closes it, or where more follows than the end of its cell."""
 
@@ -45,17 +50,20 @@ REPLACED = "\ufffd"
 """Stands for bytes that are no UTF-8, here and in every text that was read so before."""
 
 
-class LinesTable(Table):
-    """A table in lines."""
+def cut(text: str) -> str:
+    """A text to be quoted in a reason; `; ` stands between reasons alone."""
+    text = text.replace("; ", ";")
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
 
-    @property
-    def first_byte(self) -> int:
-        """Place in the file where the rows begin."""
-        return 0
+
+class CsvTable(Table):
+    """Comma-separated values with a header row; lists are JSON in their cells."""
+
+    has_untyped_axes = True
 
     def open(self) -> BinaryIO:
         """The file, to be read from its start."""
-        return open(self.path, "rb")
+        return open(self.path, "rb") if self.content is None else io.BytesIO(self.content)
 
     @cached_property
     def head(self) -> bytes:
@@ -89,14 +97,8 @@ class LinesTable(Table):
 
     def _note_progress(self, file: BinaryIO) -> None:
         packed: Any = getattr(file, "fileobj", file)  # of gzip
-        self.progress = Progress(packed.tell(), self.path.stat().st_size, "B")
-
-    def end_of_lines(self, content: bytes, line: int, *, is_whole: bool = False) -> int:
-        """Byte behind the last whole line of content that begins with a line of the file, 0 where there is none.
-
-        Whole content is the end of the file.
-        """
-        return content.rfind(b"\n") + 1
+        total = self.path.stat().st_size if self.content is None else len(self.content)
+        self.progress = Progress(packed.tell(), total, "B")
 
     def too_many_broken(self, first: str) -> FleetError:
         """The error of a file of which hardly a line is a row."""
@@ -104,21 +106,6 @@ class LinesTable(Table):
             f"{self.path}: more than {MOST_BROKEN} lines of one stretch of {BLOCK_BYTES} bytes can’t be read as rows, "
             f"the first of them is {cut(first)}; mend them or leave them out"
         )
-
-
-def cut(text: str) -> str:
-    """A text to be quoted in a reason; `; ` stands between reasons alone."""
-    text = text.replace("; ", ";")
-    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
-
-
-# --- CSV --------------------------------------------------------------------------------------------------------------
-
-
-class CsvTable(LinesTable):
-    """Comma-separated values with a header row; lists are JSON in their cells."""
-
-    has_untyped_axes = True
 
     @cached_property
     def _header(self) -> tuple[list[str], int]:
@@ -144,6 +131,7 @@ class CsvTable(LinesTable):
 
     @property
     def first_byte(self) -> int:
+        """Place in the file where the rows begin."""
         return self._header[1]
 
     @cached_property
@@ -152,17 +140,19 @@ class CsvTable(LinesTable):
             return False
         batches = self._texts(["torque_Nm"])
         first = next((cells[0].as_py() for batch in batches if len(cells := batch.rows[0].drop_null())), None)
-        if first is None:
-            return any(name in COLUMNS.others for name in self.names)
-        return bool(first.lstrip().startswith("["))
+        return first is not None and bool(first.lstrip().startswith("["))
 
     @property
     def axis_type(self) -> pa.DataType:
         return pa.string()
 
     def end_of_lines(self, content: bytes, line: int, *, is_whole: bool = False) -> int:
+        """Byte behind the last whole line of content that begins with a line of the file, 0 where there is none.
+
+        Whole content is the end of the file.
+        """
         if b'"' not in content:
-            return super().end_of_lines(content, line)
+            return content.rfind(b"\n") + 1
         given = np.frombuffer(content, np.uint8)
         ends, marks = np.flatnonzero(given == ord("\n")), np.flatnonzero(given == ord('"'))
         inside = np.searchsorted(marks, ends) % 2 == 1
@@ -197,7 +187,7 @@ class CsvTable(LinesTable):
             for name in self.names:
                 column, wrong = _parsed(texts.rows[name].combine_chunks(), COLUMNS.all.get(name), self.type_of(name))
                 columns.append(column)
-                faults += (Fault(row, name, reason) for row, reason in wrong if row not in broken)
+                faults += (Fault(row, name, *reason) for row, reason in wrong if row not in broken)
             yield Batch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
 
     def _texts(self, names: Sequence[str]) -> Iterator[Batch]:
@@ -241,12 +231,7 @@ class CsvTable(LinesTable):
             axes = pa.array([self._axis_of(row.text, row.actual_columns) for row in broken], pa.string())
             filled = pc.replace_with_mask(placed[AXIS].combine_chunks(), pa.array(is_broken), axes)
             placed = placed.set_column(placed.column_names.index(AXIS), AXIS, filled)
-        said = "the row has {} cells where the header has {}, in {}"
-        faults = [
-            Fault(row.number - 1, AXIS, said.format(row.actual_columns, row.expected_columns, cut(row.text)))
-            for row in broken
-        ]
-        return Batch(placed, faults)
+        return Batch(placed, [Fault(row.number - 1, AXIS, _told(row), "row_length") for row in broken])
 
     def _axis_of(self, line: str, cells: int) -> str | None:
         """Axis of a broken row, where its cell has an end, and the header names it."""
@@ -268,13 +253,19 @@ class GzipCsvTable(CsvTable):
     """CSV in a gzip file."""
 
     def open(self) -> BinaryIO:
-        return cast(BinaryIO, gzip.open(self.path))
+        return cast(BinaryIO, gzip.open(self.path if self.content is None else io.BytesIO(self.content)))
 
     def read(self, file: BinaryIO, size: int) -> bytes:
         try:
             return super().read(file, size)
         except (OSError, EOFError, zlib.error) as error:
             raise FleetError(f"{self.path}: can’t be read as gzip: {error}") from None
+
+
+def _told(row: pacsv.InvalidRow) -> Sentence:
+    """Reason of a row with too few or too many cells."""
+    counts = {"found": str(row.actual_columns), "expected": str(row.expected_columns)}
+    return Sentence(WRONG_LENGTH, {**counts, "row": cut(row.text)})
 
 
 def _are_of_cells(given: NDArray[np.uint8], marks: NDArray[np.intp]) -> bool:
@@ -298,7 +289,7 @@ def _as_utf8(content: bytes) -> bytes:
     return content
 
 
-def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, str]]]:
+def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, Reason]]]:
     """Values of cells of CSV, and the rows of those that are none, with what would be right."""
     if column is None or pa.types.is_string(wanted):
         broken = pc.fill_null(pc.match_substring(texts, REPLACED), False)
@@ -318,12 +309,14 @@ def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tupl
     return texts.cast(wanted), [(int(row), NO_NUMBER) for row in wrong]
 
 
-def no_list(column: Column) -> str:
+def no_list(column: Column) -> Reason:
     """Reason of a cell that is no list."""
     return NO_TEXTS if column.kind == "string" else NO_NUMBERS
 
 
-def _one_by_one(cells: pa.Array, read: Any, wanted: pa.DataType, reason: str) -> tuple[pa.Array, list[tuple[int, str]]]:
+def _one_by_one(
+    cells: pa.Array, read: Any, wanted: pa.DataType, reason: Reason
+) -> tuple[pa.Array, list[tuple[int, Reason]]]:
     values, wrong = [], []
     for row, cell in enumerate(cells.to_pylist()):
         try:
