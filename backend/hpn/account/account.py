@@ -30,7 +30,7 @@ from hpn.engine.duty import Duty
 from hpn.engine.selection import CheckDefinition, Selection
 from hpn.physics import equations
 from hpn.words.quantities import CANDIDATE, DUTY, INPUTS, RESERVE
-from hpn.words.reader import Reader
+from hpn.words.reader import NOTHING, Reader
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Named, Sentence
 
@@ -176,11 +176,17 @@ class Account:
 
     @cached_property
     def _by_code(self) -> Mapping[str, Line]:
-        return {line.code: line for line in (*self.cycle, *self.figures, *self.reserves, *self.published)}
+        ranges = published.ranged(self.published)
+        return {line.code: line for line in (*ranges, *self.cycle, *self.figures, *self.reserves, *self.published)}
 
     def line(self, code: str) -> Line | None:
         """A figure by its place in `QUANTITIES`; None of one that the version of a kept answer did not know."""
         return self._by_code.get(code)
+
+    def text(self, code: str, reader: Reader) -> str:
+        """A figure with its unit, a dash where it is not known; blank of one that has no line."""
+        line = self.line(code)
+        return (line.text(reader) or NOTHING) if line else ""
 
     # --- Checks -------------------------------------------------------------------------------------------------------
 

@@ -38,7 +38,7 @@ class Line:
     """A quantity by its place in `QUANTITIES`. Its value is None where there is none, though it is asked for.
 
     `unit` is a suffix. `until` ends a range that begins with the value, and `sign` says of a bound that it is one.
-    What was entered or is published is written as it stands, and a computed number rounded.
+    What was entered is written as it stands, what is published likewise in its own unit; any other number is rounded.
     """
 
     code: str
@@ -70,8 +70,10 @@ class Line:
         """The value as it is read, without its unit: a number, a range or words; blank where there is none."""
         if not isinstance(self.value, float | int):
             return str(self.shown(reader) or "")
-        write = reader.figure if self.kind == "computed" else reader.exact
-        until = "" if self.until is None else f" … {write(self.until, self.unit)}"
+        printed = self.kind == "published" and reader.measure(self.unit).same
+        write = reader.exact if printed or self.kind == "entered" else reader.figure
+        between = " … " if self.value < 0 else "–"
+        until = "" if self.until is None else f"{between}{write(self.until, self.unit)}"
         return f"{self.sign}{' ' if self.sign else ''}{write(self.value, self.unit)}{until}"
 
     def text(self, reader: Reader) -> str:

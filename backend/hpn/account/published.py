@@ -27,11 +27,14 @@ GROUPS: Mapping[str, str] = {
 }
 """Titles of the groups of a page, by the figure that each begins with."""
 
-RANGES: Mapping[str, tuple[str, str]] = {
-    "ambient_temperature_minimum_degC": ("ambient_temperature_maximum_degC", N_("Ambient temperature")),
-    "length_min_mm": ("length_max_mm", N_("Length, depending on the motor")),
+RANGES: Mapping[str, tuple[str, str, str]] = {
+    "ambient_temperature_minimum_degC": (
+        *("ambient_temperature_maximum_degC", "ambient_temperature"),
+        N_("Ambient temperature"),
+    ),
+    "length_min_mm": ("length_max_mm", "length", N_("Length, depending on the motor")),
 }
-"""Figures that begin a range: the figure that ends it, and the name of both."""
+"""Figures that begin a range: the figure that ends it, and the code and name of both."""
 
 AT_MOST = ("backlash_arcmin", "transmission_accuracy_arcmin")
 """Figures that are published as an upper limit."""
@@ -76,21 +79,22 @@ def _group_of_each() -> Iterator[tuple[str, str]]:
 
 
 _GROUP_OF = dict(_group_of_each())
+_GROUP_OF |= {code: _GROUP_OF[first] for first, (_, code, _) in RANGES.items()}
 
 
 def ranged(lines: list[Line]) -> list[Line]:
     """Published figures with each range as one line; of equal ends, or where one is missing, the number alone."""
     by_name = {_name(line): line for line in lines}
-    ends = {end for end, _ in RANGES.values()}
+    ends = {end for end, _, _ in RANGES.values()}
     return [_range(line, by_name) if name in RANGES else line for name, line in by_name.items() if name not in ends]
 
 
 def _range(first: Line, by_name: Mapping[str, Line]) -> Line:
-    end, name = RANGES[_name(first)]
+    end, code, name = RANGES[_name(first)]
     values = list(dict.fromkeys(one.value for one in (first, by_name[end]) if isinstance(one.value, float | int)))
     named = next((one for one in (first, by_name[end]) if one.value is not None), first)
     return Line(
-        first.code,
+        f"gear.{code}",
         Named(name),
         values[0] if values else None,
         first.unit,

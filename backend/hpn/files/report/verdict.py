@@ -4,13 +4,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from hpn.account.readings import shortest_life
-from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.remedy import remedy_of
 from hpn.engine.tried import needed_of
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
-from hpn.files.words import bound_of, exact_percent, measured, title_of, used
+from hpn.files.words import bound_of, exact_percent, title_of, used
 from hpn.words.quantities import GEAR
 from hpn.words.reader import NOTHING, Reader
 from hpn.words.symbols import sentence
@@ -73,35 +72,15 @@ def _rank(export: Export) -> Sentence:
 
 def _facts(export: Export, reader: Reader) -> Iterable[tuple[str, str]]:
     """Ordering code, lives, weight and length: label and text, blank where there is none."""
-    candidate, gear, load = export.candidate, export.gear(export.candidate), export.application.loads
+    account, load = export.account, export.application.loads
     yield reader.text(N_("Ordering code")), export.heading.ordering_code.strip()
-    if load and (check := candidate.check("output_bearing_life")) and check.status != "not_rated":
-        asked = Sentence(
-            N_("Bearing life {basis}, asked {life}"), {"basis": load.life_basis, "life": Quantity(load.life_h, "h", 6)}
-        )
-        life = candidate.bearing_life_L10_h if load.life_basis == "L10" else candidate.bearing_life_L50_h
-        known = candidate.says(f"bearing_life_{load.life_basis}_h")
-        yield reader.told(asked), _life(life, life is None, reader) if known else ""
-    yield reader.text(N_("Gear life L_10")), _gear_life(candidate, reader) if candidate.says("life_L10_h") else ""
-    if gear:
-        yield reader.text(GEAR["weight_kg"].name), _published(gear.weight_kg, "kg", reader)
-        yield reader.text(N_("Length")), _length(gear, reader)
-
-
-def _gear_life(candidate: Candidate, reader: Reader) -> str:
-    return _life(candidate.life_L10_h, candidate.is_unlimited("life_L10_h"), reader)
-
-
-def _life(life_h: float | None, is_unlimited: bool, reader: Reader) -> str:
-    return reader.text(N_("unlimited")) if is_unlimited else measured(life_h, "h", reader)
-
-
-def _length(gear: Gear | None, reader: Reader) -> str:
-    if gear is None or gear.length_max_mm is None:
-        return NOTHING
-    shortest, longest = (reader.exact(value, "mm") for value in (gear.length_min_mm, gear.length_max_mm))
-    both = longest if shortest in (longest, NOTHING) else f"{shortest}–{longest}"
-    return reader.with_unit(both, "mm")
+    if load and (check := account.check("output_bearing_life")) and check.result.status != "not_rated":
+        values = {"basis": load.life_basis, "life": Quantity(load.life_h, "h", 6)}
+        asked = Sentence(N_("Bearing life {basis}, asked {life}"), values)
+        yield reader.told(asked), account.text(f"candidate.bearing_life_{load.life_basis}_h", reader)
+    yield reader.text(N_("Gear life L_10")), account.text("candidate.life_L10_h", reader)
+    yield reader.text(GEAR["weight_kg"].name), account.text("gear.weight_kg", reader)
+    yield reader.text(N_("Length")), account.text("gear.length", reader)
 
 
 def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
@@ -193,7 +172,7 @@ def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
 
 def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]:
     """A suitable gear as the cells of a table."""
-    gear, code = export.gear(candidate), candidate.governing_check
+    account, code, life = export.account.of(candidate), candidate.governing_check, shortest_life(candidate)
     return {
         "rank": reader.exact(candidate.rank),
         "gear": candidate.designation,
@@ -201,23 +180,19 @@ def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]
         **bar(candidate.utilisation, bound_of(export, code), candidate.status, reader),
         "governing": reader.text(export.selection.name_of(code)) if code else "",
         "figures": [
-            _published(gear.weight_kg if gear else None, "kg", reader),
-            _length(gear, reader),
-            reader.told(life.sentence) if (life := shortest_life(candidate)) else NOTHING,
+            account.text("gear.weight_kg", reader) or NOTHING,
+            account.text("gear.length", reader) or NOTHING,
+            reader.told(life.sentence) if life else NOTHING,
         ],
     }
 
 
-def _published(value: float | None, unit: str, reader: Reader) -> str:
-    return reader.with_unit(reader.exact(value, unit), unit)
-
-
 def _missed(export: Export, candidate: Candidate, reader: Reader) -> str:
     """Failed checks of a rejected gear, and the ways to make it fit."""
-    gear, name = export.gear(candidate), candidate.designation
-    if gear and gear.weight_kg:
-        name = f"{name} ({_published(gear.weight_kg, 'kg', reader)})"
-    failed = failures(export.account.of(candidate), reader)
+    account, name = export.account.of(candidate), candidate.designation
+    if account.gear and account.gear.weight_kg:
+        name = f"{name} ({account.text('gear.weight_kg', reader)})"
+    failed = failures(account, reader)
     told = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
     remedy = _remedy(export, candidate)
     return f"{told} {reader.told(remedy)}" if remedy else told
