@@ -59,3 +59,13 @@ def test_a_table_of_axes_becomes_a_project(visitor: Visitor, tmp_path: Path) -> 
     expect(page.get_by_text("P-77")).to_be_visible()
     assert violations(page) == []
     expect(page.get_by_text("200 of 200")).to_be_visible()
+
+
+def test_an_example_machine_is_opened_sized_and_its_axes_lead_to_selections(visitor: Visitor) -> None:
+    page = visitor.open("/machines")
+    assert violations(page) == []
+    page.get_by_role("button", name="Open the example machine").click()
+    expect(page.get_by_text("5 of 5")).to_be_visible()
+    expect(page.get_by_text("5 with a gear")).to_be_visible()
+    page.get_by_role("link", name="Tool arm").first.click()
+    expect(page.locator("#duty tbody tr")).to_have_count(3)

@@ -93,7 +93,7 @@ SYMBOLS = (
     Symbol("Tk", ("emergency_stop", "torque_Nm")),
     Symbol("Nk", ("emergency_stop", "count"), "whole"),
     Symbol(
-        "TB", ("emergency_stop", "brake", "torque_Nm"), hint=N_("At the motor; the largest that the brake can give.")
+        "TB", ("emergency_stop", "brake", "torque_Nm"), hint=N_("At the motor, the largest; T_k follows for each gear.")
     ),
     Symbol("tb", ("emergency_stop", "brake", "rise_time_s"), placeholder="0"),
     Symbol("tr", ("emergency_stop", "brake", "reaction_time_s"), placeholder="0"),
@@ -104,17 +104,17 @@ SYMBOLS = (
         "TL",
         ("emergency_stop", "brake", "load_torque_Nm"),
         placeholder="0",
-        hint=N_("At the gear, of weight and process force; a motion has its own."),
+        hint=N_("At the gear, of weight and process; a motion has its own."),
     ),
     Symbol(
         "To",
         ("emergency_stop", "brake", "opposing_torque_Nm"),
-        hint=N_("The same with friction and J · α; by default the load’s torque. A motion has its own."),
+        hint=N_("With friction and J · α; by default the load’s torque."),
     ),
     Symbol(
         "kd",
         ("emergency_stop", "brake", "dynamic_factor"),
-        hint=N_("Your own, in place of the bound: T_k = f T_r + (f − 1) T_o."),
+        hint=N_("Your own, in place of the bound of T_k."),
     ),
     Symbol("FR", ("output_load", "radial_N")),
     Symbol("FA", ("output_load", "axial_N")),
@@ -123,7 +123,7 @@ SYMBOLS = (
         ("output_load", "load_coefficient"),
         placeholder="1",
         offered=(1, 1.2, 1.5),
-        hint=N_("1–1.2 smooth, 1.2–1.5 normal, 1.5–3 impact; other handbooks"),
+        hint=N_("1–1.2 smooth, 1.2–1.5 normal, 1.5–3 with impact"),
     ),
     Symbol("Lb", ("output_load", "life_h"), placeholder="20000", hint=YEAR),
     Symbol(
@@ -137,26 +137,25 @@ SYMBOLS = (
         ("output_load", "model"),
         "text",
         choices=BEARING_MODELS,
-        hint=N_(
-            "Straight line: between the two published limits, and inside every curve that bearing theory allows. ISO "
-            "281: the factors of the bearing standard, which permit more where both loads act."
-        ),
+        hint=N_("ISO 281 permits more than the line where both loads act."),
         supplied={"digitised": "curves"},
     ),
     Symbol(
         "xR",
         ("output_load", "radial_position_mm"),
-        hint=N_("From the shaft’s shoulder, outwards positive; by default at the shaft’s centre."),
+        hint=N_("From the shoulder outwards; by default the shaft’s centre."),
     ),
-    Symbol("yA", ("output_load", "axial_radius_mm"), placeholder="0", hint=N_("From the shaft’s axis.")),
+    Symbol(
+        "yA",
+        ("output_load", "axial_radius_mm"),
+        placeholder="0",
+        hint=N_("From the shaft’s axis; by default along it."),
+    ),
     Symbol(
         "xc",
         ("output_load", "shaft_centre_mm"),
         "by_size",
-        hint=N_(
-            "From the shoulder, at least: not published, so take it from the manufacturer’s drawing. One for all "
-            "sizes, or by size: 20A:\u00a021; others:\u00a018"
-        ),
+        hint=N_("From the shoulder; by size: 20A:\u00a021; others:\u00a018"),
     ),
     Symbol(
         "fm",
@@ -169,7 +168,7 @@ SYMBOLS = (
         "kb",
         ("output_load", "belt_tension_factor"),
         placeholder="2",
-        hint=N_("Radial load over the largest tangential force; the pretension acts always."),
+        hint=N_("Radial load over the largest tangential force; acts always."),
     ),
     Symbol(
         "dt",
@@ -191,17 +190,19 @@ SYMBOLS = (
         ("requirements", "utilisation"),
         placeholder="1",
         offered=(0.7, 0.8, 0.9, 1),
-        hint=N_("Your own reserve: 0.8 keeps every load at or below 80\u202f% of its limit."),
+        hint=N_("0.8 keeps every load at or below 80\u202f% of its limit."),
     ),
     Symbol(
         "eta",
         ("requirements", "efficiency"),
         placeholder="1",
-        hint=N_("Your assumption, between 0 and 1. Without one the motor side is loss-free, a lower bound."),
+        hint=N_("Your assumption; without one the motor side has no losses."),
     ),
     Symbol("JL", ("requirements", "load_inertia_kgm2")),
-    Symbol("fn", ("requirements", "natural_frequency_Hz"), hint=N_("Needs the load’s inertia or a motion.")),
-    Symbol("pe", ("requirements", "position_error_arcmin")),
+    Symbol(
+        "fn", ("requirements", "natural_frequency_Hz"), hint=N_("Motor held; needs the load’s inertia or a motion.")
+    ),
+    Symbol("pe", ("requirements", "position_error_arcmin"), hint=N_("Accuracy, wind-up and backlash, added.")),
     Symbol("pem", ("requirements", "position_error_mm"), hint=N_("At the radius below.")),
     Symbol("pr", ("requirements", "position_radius_mm")),
     Symbol(
@@ -215,7 +216,7 @@ SYMBOLS = (
         "rf",
         ("requirements", "rest_friction_Nm"),
         placeholder="0",
-        hint=N_("At the gear; holds the axis in phases at speed 0 and in the pause. A motion has its mechanism’s."),
+        hint=N_("At the gear; holds the axis at speed 0 and in the pause."),
     ),
     Symbol(
         "lr",
@@ -228,7 +229,7 @@ SYMBOLS = (
         ("application_area",),
         "text",
         choices={"": N_("none"), **AREAS},
-        hint=N_("These need a risk assessment and the manufacturer’s approval."),
+        hint=N_("Needs a risk assessment and the manufacturer’s approval."),
     ),
     Symbol(
         "rank",
@@ -284,7 +285,7 @@ _OF_TURNING = {
     "J": N_("Of everything that turns with pinion, pulley or screw."),
     "Tf": N_("At pinion, pulley or screw, against the motion."),
 }
-_OF_ROTARY = {"J": N_("Of everything that turns about the axis, including a mass off the shaft.")}
+_OF_ROTARY = {"J": N_("Of all that turns, including a mass off the shaft.")}
 
 
 @cache
@@ -375,19 +376,16 @@ GROUPS = (
         "brake",
         N_("Brake of the emergency stop"),
         ("TB", "tb", "tr", "nb", "TL", "To", "kd"),
-        hint=N_("Instead of the emergency-stop torque, which then follows for each gear."),
     ),
     FormGroup(
         "lever",
         N_("Pinion or belt, load positions"),
         ("fm", "dt", "dd", "hx", "kb", "xR", "yA", "xc"),
-        hint=N_("Radial at the shaft’s centre, axial along its axis, unless given below."),
     ),
     FormGroup(
         "stiffness",
         N_("Stiffness and position"),
         ("fn", "pe", "pem", "pr", "pea", "lr", "rf"),
-        hint=N_("Frequency: the motor held. Position error: accuracy, wind-up and backlash, added."),
     ),
     FormGroup("limits", N_("Properties and environment"), ("bm", "bl", "K3", "m", "L", "ta", "aa")),
 )

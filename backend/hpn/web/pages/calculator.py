@@ -114,7 +114,8 @@ def once_key() -> str:
 
 def show(request: Request) -> Response:
     """The page of `/`, or only the part that changes with the input where htmx asks for it."""
-    return respond(request, read_query(request.scope["query_string"]))
+    query = request.scope["query_string"]
+    return respond(request, read_query(query), first=not query)
 
 
 async def show_posted(request: Request) -> Response:
@@ -126,8 +127,8 @@ def _posted(request: Request, body: bytes) -> Response:
     return respond(request, link_reader.parse(pairs_of(body)))
 
 
-def respond(request: Request, form: Form) -> Response:
-    """The page of a form, or only the part that changes."""
+def respond(request: Request, form: Form, *, first: bool = False) -> Response:
+    """The page of a form, or only the part that changes; a first visit says above the answer what the page is for."""
     catalogue: Catalogue = request.app.state.catalogue
     form, answer = answered(form, catalogue)
     changes = "hx-request" in request.headers
@@ -142,7 +143,7 @@ def respond(request: Request, form: Form) -> Response:
         return Response(status_code=204)  # a form with faults has no parts to fetch: those of the answer before stay
     template = "_changes.html" if changes else "page.html"
     status = 422 if form.problems else 200
-    shown = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once_key()}
+    shown = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once_key(), "first": first}
     printed = absolute(request, answer.address) if answer else ""
     return _render(request, template, status, printed=printed, **shown)
 

@@ -58,6 +58,16 @@ NO_ROOM = N_(
     "/api/v1/fleet size this table; here there is space again as soon as others are saved or expire."
 )
 
+EXAMPLE_HEAD = "axis,torque_Nm,speed_rpm,duration_s,pause_s,emergency_stop.torque_Nm,output_load.radial_N"
+EXAMPLE_AXES: Mapping[str, str] = {
+    N_("Infeed belt"): '"[21,9]","[150,300]","[0.3,1.2]",0.4,40,400',
+    N_("Indexing table"): '"[14,-12]","[120,120]","[0.25,0.25]",0.5,45,',
+    N_("Tool arm"): '"[38,24,-20]","[60,180,60]","[0.8,0.6,0.4]",1,90,900',
+    N_("Layer pusher"): '"[52,31]","[220,220]","[0.4,1.1]",1.5,160,600',
+    N_("Lift"): '"[96,70,41]","[160,160,160]","[0.5,2,0.5]",3,260,1200',
+}
+"""Axes of a machine to begin with: their names, and the columns of the head that stand behind the name."""
+
 
 @dataclass(frozen=True, slots=True)
 class Draft:
@@ -195,7 +205,11 @@ def _kept(*arguments: Any) -> FleetDraft:
     return draft_of(*arguments)
 
 
-_WORDS: dict[str, Any] = {"roles": AXIS_INPUTS.by_role}
+_WORDS: dict[str, Any] = {
+    "roles": AXIS_INPUTS.by_role,
+    "example_head": EXAMPLE_HEAD,
+    "example_axes": EXAMPLE_AXES,
+}
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
 router.add_api_route(ADDRESS, worked(start), dependencies=[admit("calculator")])
