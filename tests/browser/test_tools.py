@@ -292,7 +292,7 @@ def test_from_the_selection_to_a_gears_page_and_back_with_another_gear(visitor: 
     page = visitor.open(EXAMPLE)
     page.locator("#verdict").get_by_role("link", name="HPN-20A-5").click()
     expect(page.get_by_role("heading", level=2)).to_have_text("HPN-20A-5")
-    page.get_by_role("link", name="larger HPN-32A-5").click()
+    page.get_by_role("navigation", name="Neighbours").get_by_role("link", name="HPN-32A-5", exact=True).click()
     expect(page.get_by_role("row", name="Rated torque TN")).to_contain_text("200 Nm")
     page.get_by_role("link", name="Use in selection").click()
     expect(page).to_have_url(re.compile(re.escape(EXAMPLE) + "&gear=HPN-32A-5$"))

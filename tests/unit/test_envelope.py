@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.engine.envelopes import EnvelopeQuery
 from hpn.engine.selection import select
-from hpn.explain.drawings import Subject, chart, gear_envelope
+from hpn.explain.drawings import Subject, chart, gear_envelope, published_condition
 from hpn.explain.drawings.chart import LARGE, SMALL
 from hpn.explain.drawings.envelope import envelope_scene, sizes_scene
 from hpn.explain.drawings.picture import BearingPicture, bearing_picture
@@ -321,12 +322,31 @@ def test_every_size_is_a_line_and_the_gears_own_is_the_strong_one() -> None:
 
 
 def test_a_gear_in_the_catalogue_shows_its_published_limits() -> None:
-    envelope = gear_envelope(CATALOGUE, CATALOGUE.by_designation["HPN-20A-5"])
+    gear, lacking = (CATALOGUE.by_designation[name] for name in ("HPN-20A-5", "HPN-40A-5"))
+    envelope = gear_envelope(CATALOGUE, gear, published_condition(CATALOGUE, gear))
     assert envelope is not None
     drawn = Shown(envelope.drawing)
-    for line, f_w in zip(drawn.line("coefficient"), (1, 1.2, 1.5), strict=True):
+    for line, f_w in zip([*drawn.line("limit"), *drawn.line("coefficient")], (1, 1.2, 1.5), strict=True):
         assert flat(line) == near([(0, F_A / f_w), (F_R / f_w, 0)])
-    assert gear_envelope(CATALOGUE, CATALOGUE.by_designation["HPN-40A-5"]) is None
+    assert drawn.line("single") == []  # it would be the same line
+    assert gear_envelope(CATALOGUE, lacking, published_condition(CATALOGUE, lacking)) is None
+
+
+def test_a_gear_in_the_catalogue_shows_what_it_may_carry_at_a_speed_life_and_coefficient_that_are_asked_for() -> None:
+    """The published line over (n L / n₀ L₀)^(1/3) and f_w, written out here; the largest single load stays."""
+    gear = CATALOGUE.by_designation["HPN-20A-5"]
+    asked = EnvelopeQuery(speed_rpm=150, life_h=30_000, load_coefficient=1.3)
+    envelope = gear_envelope(CATALOGUE, gear, asked)
+    assert envelope is not None
+    k = (100 * 20_000 / (150 * 30_000)) ** (1 / 3)
+    own = envelope.curves[-1]
+    assert own.radial_N == pytest.approx([0, F_R * k / 1.3], rel=1e-12)
+    assert own.axial_N == pytest.approx([F_A * k / 1.3, 0], rel=1e-12)
+    drawn = Shown(envelope.drawing)
+    limit, single = (np.array(drawn.line(kind)[0]) for kind in ("limit", "single"))
+    # one scale for both: 1e-4 is a thousandth of a unit of the drawing on the shorter line
+    assert limit.sum(axis=0) / single.sum(axis=0) == pytest.approx(np.array([k / 1.3] * 2), rel=1e-4)
+    assert len(drawn.line("coefficient")) == 3
 
 
 @pytest.mark.parametrize(("radial", "axial"), [(0.0, 0.0), (1e-300, 0.0), (1e9, 1e9), (0.0, 1e-12)])

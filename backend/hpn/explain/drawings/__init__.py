@@ -6,10 +6,19 @@ the browser fills in.
 
 from hpn.explain.drawings.chart import chart
 from hpn.explain.drawings.cycle import cycle_picture
-from hpn.explain.drawings.envelope import gear_envelope
+from hpn.explain.drawings.envelope import gear_envelope, published_condition
 from hpn.explain.drawings.layout import Figure
 from hpn.explain.drawings.pictures import Pictures
 from hpn.explain.drawings.plane import Plane
 from hpn.explain.drawings.subject import Subject
 
-__all__ = ["Figure", "Pictures", "Plane", "Subject", "chart", "cycle_picture", "gear_envelope"]
+__all__ = [
+    "Figure",
+    "Pictures",
+    "Plane",
+    "Subject",
+    "chart",
+    "cycle_picture",
+    "gear_envelope",
+    "published_condition",
+]

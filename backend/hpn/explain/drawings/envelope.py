@@ -6,10 +6,11 @@ from xml.etree.ElementTree import Element
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, has_envelope, life_envelopes
+from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, envelope_curve, has_envelope, life_envelopes
 from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, Line, Mark, Scene, chart
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
 from hpn.explain.drawings.sizes import SizeUse
+from hpn.explain.drawings.svg import Point
 from hpn.explain.drawings.words import coefficient_name, disc_label, share
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
@@ -51,7 +52,7 @@ def sizes_scene(
     lines = []
     for place, use in enumerate(uses):
         if use.curve is not None:
-            corners = list(zip(use.curve.radial_N, use.curve.axial_N, strict=True))
+            corners = _corners(use.curve)
             own = use.gear.size == picture.gear.size
             kind = "limit" if own else f"size s{place % 4}"
             lines.append(Line(kind, use.gear.size, corners, own, use.gear.name, use.curve.load_coefficient))
@@ -60,25 +61,45 @@ def sizes_scene(
 
 @dataclass(frozen=True, slots=True)
 class GearEnvelope:
-    """Envelopes of a gear for f_w = 1, 1.2, 1.5; `supplied` tells whether they follow points of a supplement."""
+    """Envelopes of a gear for f_w = 1, 1.2, 1.5 and the one asked for, and the largest single load.
+
+    `supplied` tells whether they follow points of a supplement.
+    """
 
     curves: list[EnvelopeCurve]
     supplied: bool
     drawing: Element
 
 
-def gear_envelope(catalogue: Catalogue, gear: Gear, reader: Reader = DEFAULT) -> GearEnvelope | None:
-    """Envelopes of a gear at the published speed and life, or None where its limits are not published."""
-    supplied = gear.size in catalogue.curves
-    query = EnvelopeQuery(model="digitised" if supplied else "linear")
+def published_condition(catalogue: Catalogue, gear: Gear) -> EnvelopeQuery:
+    """Condition that the published limits hold for, with the model that follows a gear's curve where it is known."""
+    speed, life = catalogue.bearing_reference
+    return EnvelopeQuery(speed_rpm=speed, life_h=life, model="digitised" if gear.size in catalogue.curves else "linear")
+
+
+def gear_envelope(
+    catalogue: Catalogue, gear: Gear, query: EnvelopeQuery, reader: Reader = DEFAULT
+) -> GearEnvelope | None:
+    """Envelopes of a gear at a speed and life, or None where its limits are not published."""
     if not has_envelope(catalogue, gear, query.model):
         return None
     curves = life_envelopes(catalogue, gear, query)
-    corners = [list(zip(curve.radial_N, curve.axial_N, strict=True)) for curve in curves]
-    names = [coefficient_name(curve.load_coefficient, reader) for curve in curves]
-    lines = [Line("coefficient", name, along) for name, along in zip(names, corners, strict=True)]
-    limit = Line("limit", reader.text(N_("published")), corners[0], strong=True)
-    return GearEnvelope(curves, supplied, chart(Scene([limit, *lines], []), reader))
+    own = next(curve for curve in curves if curve.load_coefficient == query.load_coefficient)
+    single = envelope_curve(catalogue, gear, query.model, 1.0)
+    f_w = coefficient_name(own.load_coefficient, reader)
+    lines = [Line("limit", f"{reader.text(N_('constant load'))}, {f_w}", _corners(own), strong=True)]
+    lines += [
+        Line("coefficient", coefficient_name(curve.load_coefficient, reader), _corners(curve))
+        for curve in curves
+        if curve is not own and _corners(curve) != _corners(single)
+    ]
+    if _corners(single) != _corners(own):
+        lines.append(Line("single", reader.text(N_("single load")), _corners(single)))
+    return GearEnvelope(curves, query.model == "digitised", chart(Scene(lines, []), reader))
+
+
+def _corners(curve: EnvelopeCurve) -> list[Point]:
+    return list(zip(curve.radial_N, curve.axial_N, strict=True))
 
 
 # --- Loads ------------------------------------------------------------------------------------------------------------

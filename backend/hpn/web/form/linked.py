@@ -64,8 +64,17 @@ def _unreadable(form: Form) -> Problem:
 
 # --- From page to page ------------------------------------------------------------------------------------------------
 
+CONDITION = ("at_n", "at_life", "at_fw")
+"""Speed, life and load coefficient that the envelope on a gear’s page is asked for."""
+
+WRITTEN_AT = "at_written"
+"""Marker of the language and units that they are typed in."""
+
 OWN_NAMES = frozenset(
-    ("output", "motor", "find", "only_size", "only_i", "sort", "search", "reference", "cursor", "id", "a", "b", "back")
+    (
+        *("output", "motor", "find", "only_size", "only_i", "sort", "search", "reference", "cursor", "id", "a", "b"),
+        *("back", WRITTEN_AT, *CONDITION),
+    )
 )
 """Parameters of the pages themselves; every other one belongs to that selection."""
 

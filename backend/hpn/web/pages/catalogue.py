@@ -13,14 +13,15 @@ from hpn.account.published import groups_of
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.catalogue.ordering import OrderingCode, ordering_code
-from hpn.explain.drawings import gear_envelope
+from hpn.explain.drawings import gear_envelope, published_condition
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import absolute, current
+from hpn.web.form.condition import condition_of
 from hpn.web.form.labels import query_of
 from hpn.web.form.linked import carried_pairs, onward, query_part
-from hpn.web.pages.gear_figures import neighbours, series_figures, supplements_for
+from hpn.web.pages.gear_figures import series_figures, supplements_for
 from hpn.web.pages.rendering import page
 from hpn.words.designations import canonical_designation, canonical_size
 
@@ -122,16 +123,19 @@ def show_gear(request: Request) -> Response:
     query = request.query_params
     output, motor = (query.get(name, query.get(f"order_{name}", "")) for name in ("output", "motor"))
     order = ordering_code(catalogue, gear, output, motor)
+    reader, groups = current(), groups_of(gear)
+    condition = condition_of(query.multi_items(), reader, published_condition(catalogue, gear))
     return page(
         request,
         "gear.html",
         200,
         gear=gear,
-        groups=groups_of(gear),
+        groups=[(title, [line for line in lines if line.value is not None]) for title, lines in groups],
         missing=supplements_for(gear),
         series_figures=series_figures,
-        envelope=gear_envelope(catalogue, gear, current()),
-        neighbours=neighbours(catalogue, gear),
+        lacking=[line for _, lines in groups for line in lines if line.value is None],
+        condition=condition,
+        envelope=gear_envelope(catalogue, gear, condition.query, reader),
         order=order,
         use=_use(gear, order),
         canonical=absolute(request, f"/catalogue/{gear.designation}"),

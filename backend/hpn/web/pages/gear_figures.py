@@ -1,4 +1,4 @@
-"""The page of a gear beside its own figures: those of the whole series, its neighbours, and files for missing ones."""
+"""The page of a gear beside its own figures: those of the whole series, and files for missing ones."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -66,20 +66,3 @@ def supplements_for(gear: Gear) -> list[SupplementFile]:
             row = ",".join(known.get(name, "") if name in (*table.key, "source") else "" for name in columns)
             files.append(SupplementFile(table.file, ",".join(columns), (row,)))
     return files
-
-
-def neighbours(catalogue: Catalogue, gear: Gear) -> dict[str, Gear | None]:
-    """The gears of the next ratios in the same size, and of the next sizes in the same ratio."""
-    same_size = [other for other in catalogue.gears if other.size == gear.size]
-    same_ratio = [other for other in catalogue.gears if other.ratio == gear.ratio]
-
-    def beside(gears: list[Gear], step: int) -> Gear | None:
-        place = gears.index(gear) + step
-        return gears[place] if 0 <= place < len(gears) else None
-
-    return {
-        "lower_ratio": beside(same_size, -1),
-        "higher_ratio": beside(same_size, 1),
-        "smaller": beside(same_ratio, -1),
-        "larger": beside(same_ratio, 1),
-    }
