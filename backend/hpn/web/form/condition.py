@@ -78,7 +78,7 @@ def _query(values: Mapping[str, Any], default: EnvelopeQuery, problems: dict[str
     """Query with some values in place of the default's; None where one is refused, which is added to the problems."""
     names = {field: name for name, field in FIELDS.items()}
     try:
-        return EnvelopeQuery.model_validate(default.model_dump() | values)
+        return EnvelopeQuery.model_validate({**default.model_dump(), **values})
     except ValidationError as refused:
         for error in refused.errors(include_url=False, include_input=False):
             problems[names[str(error["loc"][0])]] = refusal_of(error)
