@@ -143,10 +143,10 @@ class Given:
         if name == "i" and (match := _RATIO.fullmatch(text.strip())):
             return match[1]
         if name in BY_SIZE:
-            return BySize(part._replace(number=self._in_wire_units(name, part.number)) for part in by_size(text).parts)
-        return self._in_wire_units(name, text)
+            return BySize(part._replace(number=self._entry(name, part.number)) for part in by_size(text).parts)
+        return self._entry(name, text)
 
-    def _in_wire_units(self, name: str, text: str) -> str:
+    def _entry(self, name: str, text: str) -> str:
         return self.notation.entry(text, self.units[name]) if name in self.units else text
 
     def add(self, name: str, text: str) -> None:
@@ -240,7 +240,6 @@ class Given:
                 self.scalars.pop(name, None)
 
     # --- What is given ------------------------------------------------------------------------------------------------
-
 
     @property
     def duty(self) -> Table:

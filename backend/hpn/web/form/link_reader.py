@@ -76,7 +76,6 @@ def parse(pairs: Pairs) -> Form:
     decimal = given.notation.reader.decimal
     return Form(
         rows=tuple(given.phases.rows),
-        origins=tuple(given.duty.origins),
         texts=given.scalars,
         lists={name: tuple(texts) for name, texts in given.lists.items()},
         moves=tuple(given.moves.rows) if given.has_motion else (),
@@ -160,7 +159,8 @@ def _numbers_by_size(name: str, text: BySize, problems: list[FieldProblem]) -> d
     for part in text.parts:
         value = read_value(part.number, "number")
         if isinstance(value, Sentence):
-            problems.append(FieldProblem(name, None, _on_size(part.place, value) if part.size else value))
+            whole = len(text.parts) == 1 and not part.size
+            problems.append(FieldProblem(name, None, value if whole else _on_size(part.place, value)))
         elif part.place in found and part.size:
             template = N_("{size} is given twice: give each size once")
             problems.append(FieldProblem(name, None, Sentence(template, {"size": _size(part.place)})))

@@ -66,21 +66,20 @@ def used_columns(names: Iterable[str], used: Collection[str]) -> list[str]:
 
 
 class Table:
-    """Rows of cells by column, each row with the place at which it stood before the buttons that edit it."""
+    """Rows of cells by column, and the buttons that edit them."""
 
     def __init__(self, names: Iterable[str], most: int) -> None:
         self.names = list(names)
         self.most = most
         self.counts: dict[str, int] = {}
         self.rows: list[dict[str, str]] = []
-        self.origins: list[int | None] = []
 
     def add(self, name: str, text: str) -> None:
         """Put a cell below the last one of its column; rows beyond the first that is too many are left out."""
         k = self.counts.get(name, 0)
         self.counts[name] = k + 1
         if k == len(self.rows) and k <= self.most:
-            self._append(k)
+            self._append()
         if k < len(self.rows):
             self.rows[k][name] = text
 
@@ -94,30 +93,28 @@ class Table:
                 del row[name]
             row.update(dict.fromkeys(added, ""))
         if not self.rows:
-            self._append(None)
+            self._append()
 
     def press(self, do: str, k: int) -> str | None:
         """Edit the rows as one button does; the element to go on from, if it does anything."""
         if do == "add":
-            self._append(None)
+            self._append()
             return self._first_of(len(self.rows) - 1)
         if not 0 <= k < len(self.rows):
             return None
         if do == "remove":
-            del self.rows[k], self.origins[k]
+            del self.rows[k]
             if not self.rows:
-                self._append(None)
+                self._append()
             return self._first_of(min(k, len(self.rows) - 1))
         if do in ("up", "down"):
             to = min(max(k + (1 if do == "down" else -1), 0), len(self.rows) - 1)
             self.rows.insert(to, self.rows.pop(k))
-            self.origins.insert(to, self.origins.pop(k))
             return self._first_of(to)
         return None
 
-    def _append(self, origin: int | None) -> None:
+    def _append(self) -> None:
         self.rows.append(dict.fromkeys(self.names, ""))
-        self.origins.append(origin)
 
     def _first_of(self, k: int) -> str:
         """Element of the first cell of a row."""
