@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.machine import kept_of
-from hpn.store import FleetDraft
+from hpn.store import MachineDraft
 from hpn.web.pages.fleet_result import draft_of
 from tests.fleet.tables import Row
 
 
-def fleet_draft(rows: Sequence[Row], catalogue: Catalogue) -> FleetDraft:
-    """Fleet of rows as it is kept."""
+def machine_draft(rows: Sequence[Row], catalogue: Catalogue) -> MachineDraft:
+    """Machine of rows as it is kept."""
     return draft_of(kept_of(rows, (), {}, catalogue), catalogue)

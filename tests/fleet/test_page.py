@@ -18,12 +18,11 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.engine.selection import select
-from hpn.fleet.faults import reasons_of
-from hpn.fleet.machine import as_parquet
-from hpn.fleet.machine import table_of as table_of_kept
 from hpn.tables.files import NO_TEXT
 from hpn.tables.reading import Reading, reading_of
+from hpn.web.columns import answer_in
 from hpn.web.form.link_writer import to_link
+from hpn.web.pages import fleet_result
 from hpn.web.pages.fleet_files import file_of
 from hpn.web.pages.fleet_upload import WANTED
 from hpn.words.reader import Reader
@@ -180,9 +179,9 @@ def test_a_name_of_a_fleet_that_was_saved_before_names_had_a_bound_is_cut_in_the
     service: FastAPI, client: TestClient, fleet: str
 ) -> None:
     assert client.portal is not None
-    saved = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
-    table = pq.read_table(io.BytesIO(saved.answers)).slice(0, 1)
-    long = as_parquet(table.set_column(0, "axis", pa.array(["x" * 40_000])))
+    saved = client.portal.call(service.state.store.find_machine, fleet.rpartition("/")[2])
+    table = fleet_result.answers_of(saved).slice(0, 1)
+    long = table.set_column(0, "axis", pa.array(["x" * 40_000]))
 
     book, typed = (file_of(long, saved.created, suffix, Reader("en")) for suffix in ("xlsx", "parquet"))
 
@@ -435,13 +434,12 @@ def test_a_table_with_more_than_a_machine_has_is_told_where_there_is_room(
 
 def test_reasons_are_kept_as_codes_and_values(client: TestClient, fleet: str, service: FastAPI) -> None:
     assert client.portal is not None
-    saved = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
-    answers = table_of_kept(saved.answers)
+    saved = client.portal.call(service.state.store.find_machine, fleet.rpartition("/")[2])
 
-    assert "error" not in answers.column_names
-    (reason,) = reasons_of(answers["faults"].to_pylist()[2])
-    assert (reason.column, reason.code) == ("torque_Nm", "float_type")
-    assert reason.sentence == Sentence(
+    (fault,) = answer_in(saved.items[2].answer).faults
+
+    assert (fault.pointer, fault.code) == ("/torque_Nm", "float_type")
+    assert fault.told == Sentence(
         "row {number}: {reason}",
         {"number": "6", "reason": Sentence("must be a number, such as 9.3, not {found}", {"found": '"abc"'})},
     )

@@ -7,39 +7,44 @@ from dataclasses import replace
 from html import unescape
 from pathlib import Path
 
-import pyarrow as pa
 import pytest
 from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.engine.selection import select
-from hpn.fleet.machine import as_parquet, table_of
-from hpn.store import FleetDraft
-from hpn.store.fleets import MOST_OF_CALLER
+from hpn.store import AxisDraft, Machine, MachineDraft
+from hpn.store.machines import MOST_OF_CALLER
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.fleet.page import HUB, post
 from tests.fleet.tables import row_of, write
 from tests.state import state_of
-from tests.store.test_fleets import MOST_BYTES
+from tests.store.test_machines import MOST_BYTES
 
 
 @pytest.fixture(scope="module")
-def kept(client: TestClient, service: FastAPI, fleet: str) -> FleetDraft:
+def kept(client: TestClient, service: FastAPI, fleet: str) -> MachineDraft:
     """The fleet of the German table as it was kept."""
     assert client.portal is not None
-    found = client.portal.call(service.state.store.find_fleet, fleet.rpartition("/")[2])
-    return FleetDraft(**{name: getattr(found, name) for name in FleetDraft.__dataclass_fields__ if name != "caller"})
+    found = client.portal.call(service.state.store.find_machine, fleet.rpartition("/")[2])
+    return draft_of(found)
 
 
-def keep(client: TestClient, service: FastAPI, draft: FleetDraft) -> str:
+def draft_of(machine: Machine, caller: str = "") -> MachineDraft:
+    """A machine once more, as if it had just been sized."""
+    names = AxisDraft.__dataclass_fields__
+    axes = [AxisDraft(**{name: getattr(axis, name) for name in names}) for axis in machine.items]
+    return MachineDraft(axes, machine.engine_version, machine.catalogue_version, owner=machine.owner, caller=caller)
+
+
+def keep(client: TestClient, service: FastAPI, draft: MachineDraft) -> str:
     """Address of a fleet that is kept as if it had just been sized."""
     assert client.portal is not None
-    return f"/machines/{client.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)}"
+    return f"/machines/{client.portal.call(service.state.store.keep_machine, draft, MOST_BYTES)}"
 
 
-def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
+def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: MachineDraft) -> None:
     address = keep(client, service, kept)
     assert "Save as a project" in client.get(address).text
 
@@ -55,7 +60,7 @@ def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: 
     assert client.get(address).status_code == 404
 
 
-def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastAPI, kept: FleetDraft) -> None:
+def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastAPI, kept: MachineDraft) -> None:
     address = keep(client, service, kept)
     assert client.post(f"{address}/rename", data={"title": "early"}).status_code == 404
     client.post(address, data={"title": "Line 4", "ref": "P-7", "author": "MM", "rev": "B"})
@@ -71,7 +76,7 @@ def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastA
 
 
 def test_names_of_fleets_that_look_like_others_are_refused(
-    client: TestClient, service: FastAPI, kept: FleetDraft
+    client: TestClient, service: FastAPI, kept: MachineDraft
 ) -> None:
     address = keep(client, service, kept)
     for name in ("title", "ref", "author", "rev"):
@@ -102,18 +107,19 @@ def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, f
 
 
 def test_last_bits_of_another_processor_are_no_other_answer(
-    client: TestClient, service: FastAPI, kept: FleetDraft
+    client: TestClient, service: FastAPI, kept: MachineDraft
 ) -> None:
-    answers = table_of(kept.answers)
-    place = answers.column_names.index("utilisation")
-    moved = [used and math.nextafter(used, 9.0) for used in answers["utilisation"].to_pylist()]
-    answers = answers.set_column(place, "utilisation", pa.array(moved, pa.float64()))
-    elsewhere = replace(kept, answers=as_parquet(answers), catalogue_version="of another machine")
+    def elsewhere(axis: AxisDraft) -> AxisDraft:
+        used = axis.answer["utilisation"]
+        moved = {"utilisation": used and math.nextafter(used, 9.0), "catalogue_version": "of another machine"}
+        return replace(axis, answer={**axis.answer, **moved})
 
-    assert "Every axis gets the same result." in unescape(client.get(keep(client, service, elsewhere)).text)
+    moved = replace(kept, axes=[elsewhere(axis) for axis in kept.axes])
+
+    assert "Every axis gets the same result." in unescape(client.get(keep(client, service, moved)).text)
 
 
-def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: FleetDraft, tmp_path: Path) -> None:
+def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: MachineDraft, tmp_path: Path) -> None:
     keys = {name: f"key of {name}" for name in ("anna", "bert")}
     pairs = [f"{name}:{hashlib.sha256(key.encode()).hexdigest()}" for name, key in keys.items()]
     settings = Settings.model_validate({"database_url": f"sqlite:///{tmp_path / 'db'}", "api_keys": " ".join(pairs)})
@@ -169,12 +175,11 @@ def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient,
     sized = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
     store, place = state_of(keyed).store, sized.headers["location"]
     assert keyed.portal is not None
-    found = keyed.portal.call(store.find_fleet, place.rpartition("/")[2])
+    found = keyed.portal.call(store.find_machine, place.rpartition("/")[2])
     caller = hashlib.sha256(b"key anna").hexdigest()
-    names = set(FleetDraft.__dataclass_fields__) - {"caller"}
-    draft = FleetDraft(**{name: getattr(found, name) for name in names}, caller=caller)
+    draft = draft_of(found, caller)
     for _ in range(MOST_OF_CALLER - 1):
-        keyed.portal.call(store.keep_fleet, draft, MOST_BYTES)
+        keyed.portal.call(store.keep_machine, draft, MOST_BYTES)
 
     refused = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
 
@@ -187,7 +192,7 @@ def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient,
 
 def test_where_unsaved_fleets_take_all_their_room_a_new_one_is_refused(tmp_path: Path) -> None:
     table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
-    settings = Settings(database_url=f"sqlite:///{tmp_path / 'db'}", maximum_unsaved_fleet_bytes=1000)
+    settings = Settings(database_url=f"sqlite:///{tmp_path / 'db'}", maximum_unsaved_fleet_bytes=100)
     with TestClient(create_app(settings), follow_redirects=False) as client:
         refused = post(client, table)
 

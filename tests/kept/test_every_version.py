@@ -11,6 +11,7 @@ from typing import Any
 from zipfile import ZipFile
 
 import openpyxl
+import pyarrow.parquet as pq
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
@@ -18,6 +19,8 @@ from pypdf import PdfReader
 from sqlalchemy import Connection
 from starlette.testclient import TestClient
 
+from hpn.documents import revision
+from hpn.store.saved import unpacked
 from hpn.store.tables import metadata
 from hpn.words.quantities import CANDIDATE
 from hpn.words.reader import Reader
@@ -51,7 +54,18 @@ def saved(file: Path) -> dict[str, Json]:
 
 
 @pytest.fixture(scope="module")
-def client(file: Path, saved: dict[str, Json]) -> Iterator[TestClient]:
+def fleets(file: Path, saved: dict[str, Json]) -> dict[str, list[Json]]:
+    """Answers of its fleets by their ids, read before, too."""
+    with sqlite3.connect(file) as connection:
+        tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
+        query = "SELECT id, answers FROM fleets WHERE saved IS NOT NULL"
+        rows = connection.execute(query).fetchall() if "fleets" in tables else []
+    connection.close()
+    return {id: pq.read_table(BytesIO(content)).to_pylist() for id, content in rows}
+
+
+@pytest.fixture(scope="module")
+def client(file: Path, saved: dict[str, Json], fleets: dict[str, list[Json]]) -> Iterator[TestClient]:
     """Client of today's service on it."""
     with opened(file) as client:
         yield client
@@ -150,13 +164,36 @@ def test_neighbours_compare(client: TestClient, saved: dict[str, Json]) -> None:
         assert all(saved[id]["candidates"][0]["size"] in page for id in (one, other))
 
 
-def test_fleets_open_with_their_files(client: TestClient, file: Path) -> None:
-    with sqlite3.connect(file) as connection:
-        ids = [row[0] for row in connection.execute("SELECT id FROM fleets WHERE saved IS NOT NULL")]
-    connection.close()
-    assert all(id in got(client, "/machines/saved", language).text for id in ids for language in LANGUAGES)
-    for id in ids:
+def test_fleets_open_with_their_files(client: TestClient, fleets: dict[str, list[Json]]) -> None:
+    for language in LANGUAGES:
+        assert all(id in got(client, "/machines/saved", language).text for id in fleets)
+    for id in fleets:
         for language in LANGUAGES:
             assert all(axis in got(client, f"/machines/{id}", language).text for axis in ("hub", "belt", "grip"))
         for suffix in ("csv", "xlsx", "parquet"):
             assert got(client, f"/machines/{id}/axes.{suffix}").content
+
+
+def test_fleets_are_machines_with_the_answers_that_were_saved(
+    client: TestClient, fleets: dict[str, list[Json]]
+) -> None:
+    for id, answers in fleets.items():
+        content = got(client, f"/machines/{id}/axes.parquet").content
+        for row, then in zip(pq.read_table(BytesIO(content)).to_pylist(), answers, strict=True):
+            assert {name: value for name, value in row.items() if name in then} == {
+                name: value for name, value in then.items() if name in row
+            }
+
+
+def test_everything_has_its_first_revision(client: TestClient, file: Path, saved: dict[str, Json]) -> None:
+    with sqlite3.connect(file) as connection:
+        rows = connection.execute(
+            "SELECT d.id, d.kind, d.revision, r.label, r.note, r.content_packed, d.title FROM documents d "
+            "JOIN revisions r ON r.document = d.id AND r.number = 1 WHERE d.saved IS NOT NULL"
+        ).fetchall()
+    connection.close()
+    assert {row[0] for row in rows if row[1] == "selection"} == saved.keys()
+    for _, _, named, label, note, content, title in rows:
+        frozen = revision.decode(unpacked(content))
+        assert frozen.title == title and [axis.number for axis in frozen.axes] == list(range(1, len(frozen.axes) + 1))
+        assert (label, note) == ((named, None) if named == "B" else ("saved", named))

@@ -110,7 +110,7 @@ def ids(client: TestClient) -> dict[str, str]:
 def put(file: Path, id: str, reply: bytes) -> None:
     """Replace a saved answer."""
     with sqlite3.connect(file) as connection:
-        connection.execute("UPDATE selections SET result_packed = ? WHERE id = ?", (packed(reply), id))
+        connection.execute("UPDATE revisions SET result_packed = ? WHERE document = ?", (packed(reply), id))
     connection.close()
 
 

@@ -85,7 +85,7 @@ def test_no_input_stands_in_what_is_logged_of_a_store_that_fails(
 ) -> None:
     client = make_client()
     with closing(sqlite3.connect(tmp_path / "store.sqlite3")) as connection:
-        connection.execute("DROP TABLE selections")
+        connection.execute("DROP TABLE documents")
 
     client.post("/api/v1/selections", json={"application": worked_example(), "title": SECRET})
     client.get(f"/api/v1/selections?reference={SECRET}")

@@ -30,6 +30,8 @@ __all__ = ["postgresql"]
 ROOT = Path(__file__).parents[2]
 BACKUP: dict[str, Any] = YAML(typ="safe").load(ROOT / "docker-compose.yml")["services"]["backup"]
 REVISIONS = [script.revision for script in ScriptDirectory(str(MIGRATIONS)).walk_revisions()]
+DOCUMENTS = "0010"
+"""Revision from which on selections are documents."""
 CLIENT = """#!/bin/sh
 # docker compose, as far as `make restore` uses it: its services run on this machine.
 set -eu
@@ -146,7 +148,7 @@ def test_a_restore_brings_back_what_was_saved_and_keeps_the_database_from_before
     assert found(stack) == [first]
     (kept,) = stack.databases() - {"hpn"}
     assert f"kept as {kept}" in done.stdout
-    assert {id for (id,) in stack.sql("SELECT id FROM selections", kept)} == {first, second}
+    assert {id for (id,) in stack.sql("SELECT id FROM documents", kept)} == {first, second}
     assert [file.name for file in (stack.folder / "backups").iterdir()] == [name]
 
 
@@ -154,7 +156,7 @@ def test_a_restore_brings_back_what_was_saved_and_keeps_the_database_from_before
 def test_a_backup_of_each_earlier_version_is_brought_up_to_date(stack: Stack, revision: str) -> None:
     id = saved_at(stack, revision)
     name = stack.backup()
-    stack.sql("DELETE FROM selections", "hpn")
+    stack.sql("DELETE FROM " + ("selections" if revision < DOCUMENTS else "documents"), "hpn")
     saved(stack)  # and so this version's tables
 
     done = stack.restore(name)
@@ -162,6 +164,20 @@ def test_a_backup_of_each_earlier_version_is_brought_up_to_date(stack: Stack, re
     assert done.returncode == 0, done.stderr
     assert found(stack) == [id]
     saved(stack)
+
+
+IN_DOCUMENTS = (
+    "INSERT INTO documents (id, kind, created, updated, saved, engine_version, catalogue_version, revisions) VALUES "
+    "(:id, 'selection', '2026-01-02 03:04:05+00', '2026-01-02 03:04:05+00', '2026-01-02 03:04:05+00', '1', 'x', 1)",
+    "INSERT INTO revisions (document, number, label, label_key, created, axes, engine_version, catalogue_version, "
+    "content_packed, result_packed) VALUES (:id, 1, 'saved', 'saved', '2026-01-02 03:04:05+00', 1, '1', 'x', "
+    ":content, :result)",
+)
+
+
+def packed_parts() -> dict[str, bytes]:
+    """A revision's content and the reply to a selection."""
+    return {"content": brotli.compress(b'{"axes":[{"resolved":{}}]}'), "result": brotli.compress(b'{"selected":null}')}
 
 
 def saved_at(stack: Stack, revision: str) -> str:
@@ -173,13 +189,17 @@ def saved_at(stack: Stack, revision: str) -> str:
         config.set_main_option("script_location", str(MIGRATIONS))
         config.attributes["connection"] = connection
         command.upgrade(config, revision)
-        connection.execute(
-            text(
-                f"INSERT INTO selections (id, created, engine_version, catalogue_version, application, {packed})"
-                " VALUES (:id, '2026-01-02 03:04:05+00', '1', 'x', '{}', :packed)"
-            ),
-            {"id": id, "packed": brotli.compress(b'{"selected":null}')},
-        )
+        if revision >= DOCUMENTS:
+            connection.execute(text(IN_DOCUMENTS[0]), {"id": id})
+            connection.execute(text(IN_DOCUMENTS[1]), {"id": id, **packed_parts()})
+        else:
+            connection.execute(
+                text(
+                    f"INSERT INTO selections (id, created, engine_version, catalogue_version, application, {packed})"
+                    " VALUES (:id, '2026-01-02 03:04:05+00', '1', 'x', '{}', :packed)"
+                ),
+                {"id": id, "packed": brotli.compress(b'{"selected":null}')},
+            )
     engine.dispose()
     return id
 
@@ -208,12 +228,12 @@ def newer(stack: Stack, name: str) -> None:
     dump_changed(stack, name, "UPDATE alembic_version SET version_num = '9999'")
 
 
-def without_fleets(stack: Stack, name: str) -> None:
-    dump_changed(stack, name, "DROP TABLE fleets")
+def without_revisions(stack: Stack, name: str) -> None:
+    dump_changed(stack, name, "DROP TABLE revisions")
 
 
 def without_a_column(stack: Stack, name: str) -> None:
-    dump_changed(stack, name, "ALTER TABLE fleets DROP COLUMN asked")
+    dump_changed(stack, name, "ALTER TABLE revisions DROP COLUMN result_packed")
 
 
 def dump_changed(stack: Stack, name: str, statement: str) -> None:
@@ -232,8 +252,8 @@ def dump_changed(stack: Stack, name: str, statement: str) -> None:
         (spoilt, "can't be restored; nothing has changed"),
         (another_programs, "is no backup of HPN Select; nothing has changed"),
         (newer, "revision 9999"),
-        (without_fleets, "the database lacks fleets"),
-        (without_a_column, "the database lacks fleets.asked"),
+        (without_revisions, "the database lacks revisions"),
+        (without_a_column, "the database lacks revisions.result_packed"),
     ],
 )
 def test_a_wrong_or_broken_backup_changes_nothing(

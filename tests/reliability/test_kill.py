@@ -10,17 +10,21 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import orjson
+from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import encode, select
 from hpn.store import Store
+from hpn.web.app import create_app
 from hpn.web.form.link_writer import to_link
+from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase
 
 KILLS, SOAK_KILLS = 40, 400
@@ -75,10 +79,14 @@ class Clients:
 
     def save(self, body: Json, key: str) -> str | None:
         """Id if the service says that it is saved."""
+        saved = self.send("POST", "/api/v1/selections", body, 201, {"Idempotency-Key": key})
+        return None if saved is None else str(saved["id"])
+
+    def send(self, method: str, path: str, body: Json, status: int, headers: dict[str, str]) -> Json | None:
+        """Answer, if one comes with the status."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
         try:
-            headers = {"Content-Type": "application/json", "Idempotency-Key": key}
-            connection.request("POST", "/api/v1/selections", json.dumps(body), headers)
+            connection.request(method, path, json.dumps(body), {"Content-Type": "application/json", **headers})
             response = connection.getresponse()
             content = response.read()
         except (OSError, http.client.HTTPException):
@@ -86,10 +94,30 @@ class Clients:
             return None
         finally:
             connection.close()
-        if response.status != 201:
+        if response.status != status:
             self.unexpected.append(f"{response.status} {content[:200]!r}")
             return None
-        return str(json.loads(content)["id"])
+        answer: Json = json.loads(content)
+        return answer
+
+
+@dataclass
+class Editors(Clients):
+    """Clients each of whom changes an axis of its own, again and again."""
+
+    place: str = ""
+    tried: dict[int, int] = field(default_factory=dict)
+    done: dict[int, int] = field(default_factory=dict)
+
+    def run(self) -> None:
+        """One client."""
+        axis = next(self.numbers) + 1
+        for quantity in itertools.count(1):
+            if self.enough.is_set():
+                return
+            self.tried[axis] = quantity
+            if self.send("PATCH", f"{self.place}/axes/{axis}", {"quantity": quantity}, 200, {}) is not None:
+                self.done[axis] = quantity
 
 
 def application(number: int) -> Json:
@@ -127,8 +155,18 @@ def test_every_acknowledged_selection_survives_a_kill_at_any_moment(
     database: str, catalogue: Catalogue, soak: bool
 ) -> None:
     kills = (SOAK_KILLS if soak else KILLS) // (1 if database.startswith("sqlite") else 4)
+    clients = killed_beside(database, kills, Clients)
+    assert len(clients.acknowledged) >= kills
+    asyncio.run(read_back(database, clients, catalogue, f"{kills} kills, {database.partition(':')[0]}"))
+
+
+C = TypeVar("C", bound=Clients)
+
+
+def killed_beside(database: str, kills: int, make: Callable[[int], C]) -> C:
+    """Clients of a port after a service has been killed beside them so often."""
     with killed_server(database, kills) as (port, process):
-        clients = Clients(port)
+        clients = make(port)
         threads = [threading.Thread(target=clients.run) for _ in range(CLIENTS)]
         for thread in threads:
             thread.start()
@@ -141,5 +179,24 @@ def test_every_acknowledged_selection_survives_a_kill_at_any_moment(
     assert finished == "done\n", "the killing broke off"
     assert clients.unexpected == []
     assert clients.broken >= kills / 4, "too few kills met a request"
-    assert len(clients.acknowledged) >= kills
-    asyncio.run(read_back(database, clients, catalogue, f"{kills} kills, {database.partition(':')[0]}"))
+    return clients
+
+
+def test_every_acknowledged_change_of_an_axis_survives_a_kill_beside_other_axes(database: str, soak: bool) -> None:
+    kills = (SOAK_KILLS if soak else KILLS) // (2 if database.startswith("sqlite") else 4)
+    axes = [{"application": application(number)} for number in range(CLIENTS)]
+    with TestClient(create_app(Settings(database_url=database, log_level="error"))) as client:
+        place = client.post("/api/v1/machines", json={"axes": axes}).headers["location"]
+
+    editors = killed_beside(database, kills, lambda port: Editors(port, place=place))
+
+    async def quantities() -> dict[int, int]:
+        store = Store(database)
+        machine = await store.find_machine(place.rpartition("/")[2])
+        await store.close()
+        assert machine is not None
+        return {axis.number: axis.quantity for axis in machine.items}
+
+    found = asyncio.run(quantities())
+    assert all(editors.done[axis] <= found[axis] <= editors.tried[axis] for axis in range(1, CLIENTS + 1))
+    assert sum(editors.done.values()) >= kills

@@ -186,9 +186,9 @@ def test_a_result_that_differs_today_stands_beside_the_saved_one(client: TestCli
 def test_sentences_that_only_read_otherwise_are_no_other_result(client: TestClient, tmp_path: Path) -> None:
     address, remedy = sent(client), BY_CODE["average_torque"].remedy.encode()
     with sqlite3.connect(tmp_path / "store.sqlite3") as database:
-        ((content,),) = database.execute("SELECT result_packed FROM selections")
+        ((content,),) = database.execute("SELECT result_packed FROM revisions")
         old = unpacked(content).replace(remedy, b"Rest.").replace(b'"text":"', b'"text":"Note: ', 1)
-        database.execute("UPDATE selections SET result_packed = ?", [packed(old)])
+        database.execute("UPDATE revisions SET result_packed = ?", [packed(old)])
 
     page = " ".join(client.get(address).text.split())
 

@@ -13,8 +13,8 @@ from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.state import state_of
-from tests.store.test_fleets import MOST_BYTES
-from tests.store.test_fleets import draft as fleet_draft
+from tests.store.test_machines import MOST_BYTES
+from tests.store.test_machines import draft as fleet_draft
 
 SAVE = {"application": worked_example(), "title": "Axis"}
 ROUNDS = 8
@@ -82,7 +82,7 @@ def kept(client: TestClient) -> str:
     """Address of a saved fleet."""
     assert client.portal is not None
     store = state_of(client).store
-    id: str = client.portal.call(store.keep_fleet, fleet_draft(), MOST_BYTES)
+    id: str = client.portal.call(store.keep_machine, fleet_draft(), MOST_BYTES)
     assert client.post(f"/machines/{id}", data={"title": "Line"}).status_code == 303
     return f"/machines/{id}"
 
@@ -120,7 +120,7 @@ def test_a_page_says_that_somebody_was_faster(client: TestClient) -> None:
 def test_a_fleet_that_two_save_at_once_has_the_names_of_one_and_the_other_learns_it(client: TestClient) -> None:
     assert client.portal is not None
     for _ in range(ROUNDS):
-        place = f"/machines/{client.portal.call(state_of(client).store.keep_fleet, fleet_draft(), MOST_BYTES)}"
+        place = f"/machines/{client.portal.call(state_of(client).store.keep_machine, fleet_draft(), MOST_BYTES)}"
         found = at_once([partial(client.post, place, data={"title": f"of {n}"}) for n in range(3)])
 
         assert sorted(found) == [303, 412, 412]

@@ -1,6 +1,7 @@
 """Databases are brought up to date at start: once, completely, and never by a version that is too old."""
 
 import asyncio
+import hashlib
 import os
 import subprocess
 import sys
@@ -11,6 +12,8 @@ from multiprocessing.synchronize import Barrier
 from pathlib import Path
 
 import brotli
+import orjson
+import pyarrow as pa
 import pytest
 import zstandard
 from alembic import command
@@ -18,16 +21,21 @@ from alembic.autogenerate import compare_metadata
 from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, bindparam, text
+from sqlalchemy import Connection, bindparam, select, text
 
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
-from hpn.engine.selection import encode, select
-from hpn.store import NewerDatabaseError, Store, upgrade
+from hpn.documents import revision
+from hpn.engine import selection
+from hpn.engine.selection import encode
+from hpn.fleet.machine import as_parquet
+from hpn.store import KeyReusedError, KeySpentError, NewerDatabaseError, Store, upgrade
 from hpn.store.engine import make_engine
-from hpn.store.tables import UtcTime, metadata
-from tests.build import cycle, phase
+from hpn.store.saved import unpacked
+from hpn.store.tables import UtcTime, metadata, revisions
+from tests.build import Json, cycle, phase
 from tests.store.drafts import change, draft
+from tests.store.test_machines import FIRST
 
 pytestmark = pytest.mark.anyio
 
@@ -165,8 +173,8 @@ def _as_before(connection: Connection) -> None:
     config.set_main_option("script_location", str(upgrade.MIGRATIONS))
     config.attributes["connection"] = connection
     command.upgrade(config, "0005")
-    reply = encode(select(Application.model_validate(HEAVY), load_catalogue()))
-    suits = encode(select(Application.worked_example(), load_catalogue()))
+    reply = encode(selection.select(Application.model_validate(HEAVY), load_catalogue()))
+    suits = encode(selection.select(Application.worked_example(), load_catalogue()))
     rows = [
         {"id": f"{number:022}", "title": title, "packed": packed}
         for number, (title, packed) in enumerate(
@@ -207,21 +215,79 @@ async def test_selections_of_earlier_versions_are_listed_and_found_as_they_were(
     await store.close()
 
 
+ASKED = [
+    {
+        "axis": "hub",
+        "torque_Nm": [40.0, 20.0],
+        "speed_rpm": [250.0, 100.0],
+        "duration_s": [0.5, 3.0],
+        "pause_s": 1.0,
+        "requirements.ratios": [5.0],
+        "emergency_stop.torque_Nm": None,
+    },
+    {"axis": "long " * 12, "torque_Nm": [9000.0], "speed_rpm": [100.0], "duration_s": [0.5], "pause_s": None},
+]
+NOTHING: Json = dict.fromkeys(("selected", "governing_check", "utilisation", "nearest", "nearest_check", "error"))
+ANSWERS = [
+    NOTHING | {"axis": "hub", "selected": "HPN-20A-5", "governing_check": "life", "utilisation": 0.5, "suitable": 3},
+    NOTHING | {"axis": "long " * 12, "nearest": "HPN-40A-3", "nearest_check": "average_torque", "suitable": 0},
+    NOTHING | {"axis": "grip", "error": "torque_Nm: is required"},
+]
+
+
 def _fleets_as_before(connection: Connection) -> None:
-    """A saved and a calculated fleet of before they had versions and callers."""
+    """A saved fleet, a calculated one and one that is damaged, of before they had versions and callers."""
     config = Config()
     config.set_main_option("script_location", str(upgrade.MIGRATIONS))
     config.attributes["connection"] = connection
     command.upgrade(config, "0007")
     columns = "axes, selected, unsuitable, rejected, engine_version, catalogue_version, asked, answers"
     statement = (
-        f"INSERT INTO fleets (id, created, saved, title, {columns}) "
-        "VALUES (:id, :now, :saved, :title, 1, 1, 0, 0, '1', 'x', :asked, :asked)"
+        f"INSERT INTO fleets (id, created, saved, title, revision, {columns}) "
+        "VALUES (:id, :now, :saved, :title, 'rev. B', 1, 1, 0, 0, '1', 'x', :asked, :answers)"
     )
     times = (bindparam("now", type_=UtcTime), bindparam("saved", type_=UtcTime))
-    for number, (title, saved) in enumerate((("kept", datetime.now(UTC)), ("calculated", None))):
-        values = {"id": f"{number:022}", "now": datetime.now(UTC), "saved": saved, "title": title}
-        connection.execute(text(statement).bindparams(*times), {**values, "asked": b"PAR1\x00\xff"})
+    asked, answers = (as_parquet(pa.Table.from_pylist(rows)) for rows in (ASKED, ANSWERS))
+    now = datetime.now(UTC)
+    for number, (title, saved, content) in enumerate(
+        (("kept", now, asked), ("calculated", None, asked), ("damaged", now, b"PAR1\x00\xff"))
+    ):
+        values = {"id": f"{number:022}", "now": now, "saved": saved, "title": title}
+        connection.execute(text(statement).bindparams(*times), {**values, "asked": content, "answers": answers})
+
+
+async def test_fleets_of_earlier_versions_are_machines_with_what_was_saved(database: str) -> None:
+    store = Store(database)
+    await change(store, _fleets_as_before)
+
+    found = await store.find_machine(f"{0:022}")
+
+    assert found is not None
+    assert (found.title, found.version) == ("kept", 1)
+    assert (found.axes, found.suitable, found.unsuitable, found.open) == (3, 1, 1, 1)
+    hub, long, grip = found.items
+    assert orjson.loads(hub.application) == {
+        "duty_cycle": {
+            "phases": [
+                {"torque_Nm": 40.0, "speed_rpm": 250.0, "duration_s": 0.5},
+                {"torque_Nm": 20.0, "speed_rpm": 100.0, "duration_s": 3.0},
+            ],
+            "pause_s": 1.0,
+        },
+        "requirements": {"ratios": [5.0]},
+    }
+    assert (hub.name, hub.answer["selected"], hub.answer["utilisation"]) == ("hub", "HPN-20A-5", 0.5)
+    assert "shortest_life_h" in orjson.loads(hub.answer["unknown"])  # of which that version knew nothing
+    assert long.name == "long " * 12
+    assert (long.answer["status"], long.answer["designation"]) == ("unsuitable", "HPN-40A-3")
+    assert grip.answer["status"] == "open" and "torque_Nm: is required" in grip.answer["faults"]
+    async with store._engine.connect() as connection:
+        rows = (await connection.execute(select(revisions).order_by(revisions.c.document))).all()
+    kept, damaged = rows
+    assert (kept.label, kept.note, kept.axes) == ("saved", "rev. B", 3)
+    assert [each.number for each in revision.decode(unpacked(kept.content_packed)).axes] == [1, 2, 3]
+    assert "can’t be read" in revision.decode(unpacked(damaged.content_packed)).axes[0].answer.faults[0].detail
+    await store.close()
 
 
 async def test_fleets_of_earlier_versions_are_renamed_saved_and_deleted(database: str) -> None:
@@ -229,10 +295,40 @@ async def test_fleets_of_earlier_versions_are_renamed_saved_and_deleted(database
     await change(store, _fleets_as_before)
     kept, calculated = f"{0:022}", f"{1:022}"
 
-    found = await store.find_fleet(kept)
-    assert found is not None and (found.title, found.asked, found.version) == ("kept", b"PAR1\x00\xff", 1)
-    assert await store.rename_fleet(kept, {"title": "new"}, 1)
-    assert await store.save_fleet(calculated, {"title": "saved"}, None)
-    assert [line.title for line in (await store.fleets())[0]] == ["saved", "new"]
-    assert not await store.delete_fleet(kept, 1) and await store.delete_fleet(kept, 2)
+    assert await store.rename(kept, {"title": "new"}, 1, "machine")
+    assert await store.save_machine(calculated, {"title": "saved"}, None, FIRST)
+    assert {line.title for line in (await store.machines())[0]} == {"saved", "new", "damaged"}
+    assert not await store.delete(kept, 1, "machine") and await store.delete(kept, 2, "machine")
+    await store.close()
+
+
+async def test_keys_of_earlier_versions_are_what_they_were(database: str) -> None:
+    """A retry of what an earlier version has saved finds it, one of what it has deleted is refused."""
+    store, once, gone = Store(database), draft(idempotency_key="k", title="t"), draft(idempotency_key="gone")
+    spent = hashlib.sha256(b"gone").hexdigest()
+
+    def before(connection: Connection) -> None:
+        config = Config()
+        config.set_main_option("script_location", str(upgrade.MIGRATIONS))
+        config.attributes["connection"] = connection
+        command.upgrade(config, "0008")
+        statement = (
+            "INSERT INTO selections (id, created, engine_version, catalogue_version, application, result_packed, "
+            "idempotency_key, digest, title) VALUES "
+            "(:id, '2026-01-02 03:04:05+00', '1', 'x', '{}', :packed, 'k', :digest, 't')"
+        )
+        values = {"id": "A" * 22, "packed": zstandard.compress(b"{}"), "digest": once.digest}
+        connection.execute(text(statement), values)
+        connection.execute(text(f"INSERT INTO spent_keys VALUES ('{spent}', '2026-01-02 03:04:05+00')"))
+
+    await change(store, before)
+
+    assert await store.save(once) == "A" * 22
+    with pytest.raises(KeyReusedError):
+        await store.save(draft(idempotency_key="k", title="u"))
+    with pytest.raises(KeySpentError):
+        await store.save(gone)
+    assert await store.delete("A" * 22)
+    with pytest.raises(KeySpentError):
+        await store.save(once)
     await store.close()

@@ -23,7 +23,7 @@ from schemathesis.specs.openapi.checks import (
 )
 from starlette.testclient import TestClient
 
-from hpn.store.tables import selections, spent_keys
+from hpn.store.tables import metadata
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import worked_example
@@ -83,8 +83,8 @@ def test_no_chain_of_requests_brings_the_service_to_a_mistake_or_to_an_answer_th
         def setup(self) -> None:
             """Take away what the chain before has left, so that the same requests have the same answers."""
             with closing(sqlite3.connect(file)) as database, database:
-                for table in (selections, spent_keys):
-                    database.execute(f"DELETE FROM {table.name}")
+                for table in metadata.tables:
+                    database.execute(f"DELETE FROM {table}")
 
         def validate_response(self, response: Response, case: Case[Any], **more: Any) -> None:
             answered[case.operation.label, response.status_code] += 1

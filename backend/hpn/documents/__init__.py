@@ -9,5 +9,6 @@
 - `gears`: the list of gears to order, with quantities and masses
 - `kinds`: `kinds_of(axes, catalogue)`, what fewer kinds of gears weigh and which axes change
 
-Nothing here knows the store or the web.
+Nothing here knows the store or the web. `hpn.store` keeps documents as rows (`records.py`), and `hpn.web.columns` turns
+axes and answers into its columns and back.
 """

@@ -3,21 +3,22 @@
 from collections.abc import Iterable, Sequence
 from itertools import islice
 from math import isfinite
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
+import msgspec
 from msgspec import structs
 from pydantic import Field
 
 from hpn import ENGINE_VERSION
 from hpn.application import InputError
-from hpn.application.faults import Fault, faults_of, pointer
+from hpn.application.faults import Location, pointer, sentences_of
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import OrderingCode, read_ordering_code
-from hpn.documents.merge import Resolved
+from hpn.documents.merge import Fault, Resolved
 from hpn.engine.batch import judge_batch
-from hpn.engine.candidates import LifeOf
+from hpn.engine.candidates import Candidate, LifeOf
 from hpn.engine.evaluation import STATUS, UNRATED, Evaluation
-from hpn.engine.selection import Judged
+from hpn.engine.selection import Judged, Selection
 from hpn.physics.equations import FloatArray
 from hpn.words.quantities import CANDIDATE
 from hpn.words.reply import Reply, described
@@ -36,11 +37,31 @@ class AxisFault(Reply, frozen=True):
     pointer: Annotated[str, Field(description="JSON pointer into the resolved application, or to the ordering code.")]
     code: Annotated[str, Field(description="Code for programs.")]
     detail: Annotated[str, Field(description="What would be right.")]
+    sentence: Annotated[Any, Field(description="The same as template and values, for any language.")] = None
 
     @classmethod
     def of(cls, faults: Iterable[Fault]) -> tuple["AxisFault", ...]:
         """Faults as they are kept, no more than are named of any input."""
-        return tuple(cls(pointer(location), code, text) for location, text, code in islice(faults, MOST_FAULTS))
+        named = islice(faults, MOST_FAULTS)
+        return tuple(cls.at(pointer(location), sentence, code) for location, sentence, code in named)
+
+    @classmethod
+    def at(cls, pointer: str, sentence: Sentence, code: str) -> "AxisFault":
+        """A fault at a place."""
+        return cls(pointer, code, sentence.text, msgspec.to_builtins(sentence))
+
+    @property
+    def told(self) -> Sentence:
+        """The sentence; of an earlier version, which kept its text alone, that text."""
+        if self.sentence is None:
+            return Sentence("{text}", {"text": self.detail}, ("text",))
+        return msgspec.convert(self.sentence, Sentence)
+
+    @property
+    def location(self) -> Location:
+        """Its place."""
+        parts = (part.replace("~1", "/").replace("~0", "~") for part in self.pointer.split("/")[1:])
+        return tuple(int(part) if part.isdecimal() and len(part) < 10 else part for part in parts)
 
 
 class Asked(NamedTuple):
@@ -63,6 +84,7 @@ class AxisAnswer(Reply, frozen=True):
     designation: Annotated[str | None, Field(description="Gear that the figures are of.")] = None
     governing_check: str | None = None
     utilisation: float | None = None
+    life_L10_h: float | None = None
     shortest_life_h: float | None = None
     shortest_life_of: LifeOf | None = None
     natural_frequency_Hz: float | None = None
@@ -73,6 +95,9 @@ class AxisAnswer(Reply, frozen=True):
     average_torque_Nm: Annotated[float | None, Field(description="Average torque T_av of the cycle.")] = None
     not_asked: Annotated[
         tuple[str, ...], Field(description="Paths of common values that need what this axis lacks.")
+    ] = ()
+    unknown: Annotated[
+        tuple[str, ...], Field(description="Figures that the version of this answer did not know; they are null.")
     ] = ()
     faults: Annotated[tuple[AxisFault, ...], Field(description="Reasons for which an axis is open.")] = ()
     engine_version: Annotated[str, Field(description="Version of the calculation.")] = ENGINE_VERSION
@@ -96,7 +121,7 @@ def answers(axes: Sequence[Asked], catalogue: Catalogue) -> list[AxisAnswer]:
 
 def _whole(resolved: Resolved, answer: AxisAnswer | InputError | None, catalogue: Catalogue) -> AxisAnswer:
     if not isinstance(answer, AxisAnswer):
-        faults = resolved.faults if answer is None else faults_of(answer)
+        faults = resolved.faults if answer is None else sentences_of(answer)
         answer = AxisAnswer("open", faults=AxisFault.of(faults))
     return structs.replace(answer, not_asked=resolved.not_asked, catalogue_version=catalogue.version)
 
@@ -116,6 +141,7 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
         designation=rows[gear].designation,
         governing_check=None if verdict == UNRATED else governing,
         utilisation=_finite(evaluation.utilisation.item(index, gear)),
+        life_L10_h=_figure(figures.life_L10_h, index, gear),
         shortest_life_h=_figure(figures.shortest_life_h, index, gear),
         shortest_life_of=figures.shortest_life_of[index].tolist()[gear] or None,
         natural_frequency_Hz=_figure(figures.natural_frequency_Hz, index, gear),
@@ -124,6 +150,28 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
         suitable=outcome.suitable,
         runner_up=rows[evaluation.order.item(index, 1)].designation if outcome.suitable > 1 else None,
         average_torque_Nm=_finite(evaluation.case.duty.average_torque_Nm.item(index)),
+    )
+
+
+def answer_of(selection: Selection, shown: Candidate, catalogue: Catalogue) -> AxisAnswer:
+    """The same out of a whole selection, for the candidate that is shown first."""
+    suitable = [each.designation for each in selection.candidates if each.status == "suitable"]
+    return AxisAnswer(
+        status=shown.status,
+        selected=selection.selected,
+        designation=shown.designation,
+        governing_check=shown.governing_check,
+        utilisation=shown.utilisation,
+        life_L10_h=shown.life_L10_h,
+        shortest_life_h=shown.shortest_life_h,
+        shortest_life_of=shown.shortest_life_of,
+        natural_frequency_Hz=shown.natural_frequency_Hz,
+        motor_torque_limit_Nm=shown.motor_torque_limit_Nm,
+        weight_kg=catalogue.by_designation[shown.designation].weight_kg,
+        suitable=len(suitable),
+        runner_up=suitable[1] if len(suitable) > 1 else None,
+        average_torque_Nm=selection.duty.average_torque_Nm,
+        catalogue_version=catalogue.version,
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from hpn.documents.common import COMMON
@@ -15,7 +15,7 @@ Json = dict[str, Any]
 MOST_AXES, MOST_PHASES, MOST_BYTES, MOST_REVISIONS = 10_000, 200_000, 32_000_000, 1_000
 """Axes, phases or moves of all axes, bytes of a request, and revisions that a document may have."""
 
-MOST_OF_A_KIND = 1_000_000
+MOST_OF_A_KIND, MOST_NUMBER = 1_000_000, 2**31 - 1
 
 
 def _distinct(paths: tuple[str, ...]) -> tuple[str, ...]:
@@ -38,6 +38,9 @@ Quantity = Annotated[int, Field(strict=True, ge=1, le=MOST_OF_A_KIND), WHOLE]
 class Axis(Model):
     """One axis: what it is called, how often there is one, and what is asked of it beside the common values."""
 
+    number: Annotated[int, Field(strict=True, ge=1, le=MOST_NUMBER), WHOLE] | None = Field(
+        None, description="Number of a removed axis, which comes back; else it is ignored."
+    )
     name: Name | None = Field(None, description="Your name for the axis; it need not be unique.", examples=["Y bridge"])
     quantity: Quantity = Field(1, description="Number of such axes.", examples=[1])
     note: Note | None = Field(None, description="A note on the axis.")
@@ -55,6 +58,17 @@ class Axis(Model):
         description="The axis’s own part of its application, kept as it is sent; what it lacks is inherited. One that "
         "cannot be calculated is kept, too, and leaves the axis open.",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _leaves_out_what_is_given_alone(cls, value: Any) -> Any:
+        if isinstance(value, dict) and not READ_ONLY.isdisjoint(value):
+            return {name: each for name, each in value.items() if name not in READ_ONLY}
+        return value
+
+
+READ_ONLY = frozenset(("resolved", "answer", "updated", "updated_by"))
+"""Fields of an axis that are given back, and ignored when they are sent."""
 
 
 def phases_of(own: Mapping[str, Any]) -> int:

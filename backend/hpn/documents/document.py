@@ -33,11 +33,24 @@ class Document(TitleBlock):
     common: Common = Field(default_factory=Common, description="Values that hold for every axis without its own.")
     axes: Axes = Field((), description="Axes in their order.")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _leaves_out_what_is_given_alone(cls, value: Any) -> Any:
+        if isinstance(value, dict) and not READ_ONLY.isdisjoint(value):
+            return {name: each for name, each in value.items() if name not in READ_ONLY}
+        return value
+
     @model_validator(mode="after")
     def _within_bounds(self) -> Self:
         if fault := excess_of([phases_of(axis.application) for axis in self.axes]):
             raise refused(self, (("axes",), fault))
         return self
+
+
+READ_ONLY = frozenset(
+    ("id", "url", "kind", "revision", "created", "updated", "saved", "counts", "utilisation", "order")
+)
+"""Fields of a machine that are given back, and ignored when they are sent."""
 
 
 def excess_of(phases: Sequence[int]) -> PydanticCustomError | None:

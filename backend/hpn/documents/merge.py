@@ -7,9 +7,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from hpn.application import Application
-from hpn.application.faults import Fault, faults_of
+from hpn.application.faults import Location, sentences_of
 from hpn.documents.axis import loads_in_phases
 from hpn.documents.common import EXCLUSIVE, flat
+from hpn.words.wording import Sentence
 
 Json = dict[str, Any]
 
@@ -21,6 +22,10 @@ LOADING = ("radial_N", "axial_N", "from_motion", "drive")
 
 LACKS = frozenset(("inertia_of_load", "no_rest", "error_radius"))
 """Codes of faults by which an application lacks what one of its values needs: a common value is then not asked."""
+
+
+Fault = tuple[Location, Sentence, str]
+"""Place of a fault, its sentence and a code for programs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +50,13 @@ def resolve(own: Mapping[str, Any], common: Mapping[str, Any], without: Collecti
     """
     not_asked: list[str] = []
     while True:
-        whole, inherited = _merged(own, common, {*without, *not_asked})
+        whole, inherited = merged(own, common, {*without, *not_asked})
         try:
             application = Application.model_validate(whole)
         except ValidationError as error:
             lacking = _lacking(error, inherited)
             if not lacking:
-                return Resolved(whole, inherited, tuple(not_asked), faults=tuple(faults_of(error)))
+                return Resolved(whole, inherited, tuple(not_asked), faults=tuple(sentences_of(error)))
             not_asked += lacking
         else:
             return Resolved(whole, inherited, tuple(not_asked), application)
@@ -64,9 +69,7 @@ def _lacking(error: ValidationError, inherited: Collection[str]) -> list[str]:
     return list(dict.fromkeys(path for path in paths if path in inherited))
 
 
-def _merged(
-    own: Mapping[str, Any], common: Mapping[str, Any], left_out: Collection[str]
-) -> tuple[Json, frozenset[str]]:
+def merged(own: Mapping[str, Any], common: Mapping[str, Any], left_out: Collection[str]) -> tuple[Json, frozenset[str]]:
     """An axis's own values with those common ones that hold for it, and the paths of these."""
     whole = {name: _given(value) if name in PARTS else value for name, value in own.items() if value is not None}
     held = {path: value for path, value in flat(common) if path not in left_out and _holds(path, whole, own)}

@@ -206,7 +206,7 @@ def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fau
         gears_for(application, catalogue)
         with_listed_motor(application, catalogue)
     except (ValidationError, InputError) as error:
-        return [_located(row, location, sentence, code) for location, sentence, code in sentences_of(error)]
+        return [located(row, location, sentence, code) for location, sentence, code in sentences_of(error)]
     return [Fault(row, AXIS, DISAGREED, "invalid")]
 
 
@@ -220,7 +220,8 @@ def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, 
             yield name, Sentence(LENGTHS, {"found": str(len(values)), "count": str(count)}), "list_length"
 
 
-def _located(row: int, location: Location, sentence: Sentence, code: str) -> Fault:
+def located(row: int, location: Location, sentence: Sentence, code: str) -> Fault:
+    """Fault at a place of an application, by the column of a table that this is."""
     column, place = COLUMNS.column_at(location)
     if place:
         template, name, value = place

@@ -1,8 +1,11 @@
-"""Selections that last: saved once, never rewritten, in an SQLite file or a PostgreSQL database."""
+"""Documents that last, in an SQLite file or a PostgreSQL database; their revisions are never rewritten."""
 
+from hpn.store.changes import Change, Limits
 from hpn.store.errors import (
+    ExcessError,
     KeyReusedError,
     KeySpentError,
+    LabelTakenError,
     NewerDatabaseError,
     NoRoomError,
     ShareSpentError,
@@ -10,19 +13,31 @@ from hpn.store.errors import (
     StoreFullError,
     StoreUnavailableError,
 )
-from hpn.store.fleets import FleetDraft, SavedFleet
+from hpn.store.keys import Once
+from hpn.store.machines import WantedLines
+from hpn.store.records import AxisDraft, Line, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
 from hpn.store.saved import Draft, SavedSelection, Summary
 from hpn.store.store import ID, Store
 
 __all__ = [
     "ID",
+    "AxisDraft",
+    "Change",
     "Draft",
-    "FleetDraft",
+    "ExcessError",
     "KeyReusedError",
     "KeySpentError",
+    "LabelTakenError",
+    "Limits",
+    "Line",
+    "Machine",
+    "MachineDraft",
     "NewerDatabaseError",
     "NoRoomError",
-    "SavedFleet",
+    "Once",
+    "RevisionDraft",
+    "RevisionLine",
+    "SavedAxis",
     "SavedSelection",
     "ShareSpentError",
     "Store",
@@ -30,4 +45,5 @@ __all__ = [
     "StoreFullError",
     "StoreUnavailableError",
     "Summary",
+    "WantedLines",
 ]

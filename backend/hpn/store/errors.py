@@ -41,3 +41,15 @@ class KeySpentError(StoreError):
 
 class KeyReusedError(StoreError):
     """An idempotency key that was used before comes with other content."""
+
+
+class LabelTakenError(StoreError):
+    """A document has a revision with this label already."""
+
+
+class ExcessError(StoreError):
+    """A document would have more of something than one may have: `axes`, `phases` or `revisions`."""
+
+    def __init__(self, what: str, most: int) -> None:
+        self.what, self.most = what, most
+        super().__init__(f"a document may have {most} {what} at most")

@@ -1,23 +1,21 @@
 """A rehearsal of saving: everything that it does to the tables, taken back in the same transaction."""
 
 import secrets
-import sys
 from dataclasses import replace
 
 from sqlalchemy import delete, literal, select
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.catalogue import Catalogue
-from hpn.store.fleets import FleetDraft, insert_fleet, remove_fleet
 from hpn.store.saved import Draft
-from hpn.store.tables import catalogues, selections, spent_keys
+from hpn.store.tables import catalogues, deletions, documents, idempotency_keys
 from hpn.store.writing import insert
 
 
 def _rehearsed(size: int) -> Draft:
     """Content of so many bytes that can't be packed."""
     return Draft(
-        application=b"", result=secrets.token_bytes(size), engine_version="", catalogue_version="", selected=None
+        application=b"{}", result=secrets.token_bytes(size), engine_version="", catalogue_version="", selected=None
     )
 
 
@@ -27,18 +25,6 @@ row still finds a place in a file of a full disk; in PostgreSQL of both files, a
 own, and rows in pages of 8 kB.
 """
 
-FLEET = FleetDraft(
-    axes=0,
-    selected=0,
-    unsuitable=0,
-    rejected=0,
-    engine_version="",
-    catalogue_version="",
-    asked=b"",
-    answers=b"",
-    caller="rehearsal",
-)
-
 
 async def rehearse(connection: AsyncConnection, catalogue: Catalogue | None = None) -> None:
     """Save and take it back; fails where saving would fail. The catalogue is kept, as the first saving would keep it.
@@ -46,11 +32,11 @@ async def rehearse(connection: AsyncConnection, catalogue: Catalogue | None = No
     The first is saved twice under one key, which has to save it once: a database that was restored without its unique
     indexes keeps that no longer, and a catalogue that is there twice can't be found.
     """
-    for table in (catalogues, spent_keys):
+    for table in (catalogues, deletions):
         await connection.execute(select(literal(1)).select_from(table).limit(1))
     first = replace(REHEARSED[0], idempotency_key=f"rehearsal {secrets.token_urlsafe(16)}")
     if catalogue is not None:
         first = replace(first, catalogue=catalogue, catalogue_version=catalogue.version)
     ids = [await insert(connection, draft) for draft in map(replace, (first, first, *REHEARSED[1:]))]
-    await connection.execute(delete(selections).where(selections.c.id.in_(ids)))
-    await remove_fleet(connection, await insert_fleet(connection, FLEET, sys.maxsize))
+    for table, column in ((documents, documents.c.id), (idempotency_keys, idempotency_keys.c.document)):
+        await connection.execute(delete(table).where(column.in_(ids)))

@@ -1,15 +1,17 @@
 """Records of selections, as the store keeps them."""
 
 import hashlib
-import secrets
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Any
 
 import brotli
 import orjson
 import zstandard
 
 from hpn.catalogue import Catalogue
+from hpn.store.records import ANSWER, LISTS, new_id
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +20,8 @@ class Draft:
 
     `designation` is the gear that its page shows first, with its status and utilisation. `owner` is the name of the API
     key that saves it, None without one. `id` is what it is saved under, unless its idempotency key has saved it before.
-    `catalogue` is the one that was asked; the store keeps one copy of each version.
+    `catalogue` is the one that was asked; the store keeps one copy of each version. `answer` has those columns of an
+    axis's answer that are no fields of this, `phases` is their number, and `label` that of the first revision.
     """
 
     application: bytes
@@ -37,7 +40,10 @@ class Draft:
     idempotency_key: str | None = None
     owner: str | None = None
     catalogue: Catalogue | None = field(default=None, repr=False)
-    id: str = field(init=False, default_factory=lambda: secrets.token_urlsafe(16))
+    answer: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    phases: int = 0
+    label: str = "saved"
+    id: str = field(init=False, default_factory=new_id)
 
     @property
     def digest(self) -> str:
@@ -46,6 +52,15 @@ class Draft:
         later = [self.author, self.revision, self.ordering_code]
         # Earlier versions knew none of these: a retry of what they saved has the same fingerprint.
         return hashlib.sha256(orjson.dumps(sent + later if any(later) else sent)).hexdigest()
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """Answer of the selection's axis, whole."""
+        own = ("selected", "designation", "utilisation", "engine_version", "catalogue_version")
+        empty = dict.fromkeys(ANSWER) | dict.fromkeys(LISTS, "[]")
+        return (
+            empty | dict(self.answer) | {name: getattr(self, name) for name in own} | {"status": self.status or "open"}
+        )
 
 
 @dataclass(frozen=True, slots=True)

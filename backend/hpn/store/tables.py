@@ -2,7 +2,19 @@
 
 from datetime import UTC, datetime
 
-from sqlalchemy import Column, DateTime, Double, Index, Integer, LargeBinary, MetaData, String, Table, Text
+from sqlalchemy import (
+    Column,
+    DateTime,
+    Double,
+    ForeignKey,
+    Index,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    Text,
+)
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeDecorator
 
@@ -24,42 +36,134 @@ class UtcTime(TypeDecorator[datetime]):
 
 metadata = MetaData()
 
-selections = Table(
-    "selections",
+documents = Table(
+    "documents",
     metadata,
     Column("id", String(32), primary_key=True),
+    Column("kind", String(9), nullable=False),  # selection or machine, and it stays that
     Column("created", UtcTime, nullable=False),
+    Column("updated", UtcTime, nullable=False),
+    Column("saved", UtcTime),  # null while nobody has saved it: it goes by itself
     Column("title", Text),
     Column("reference", Text),
-    Column("selected", Text),
-    Column("engine_version", Text, nullable=False),
-    Column("catalogue_version", Text, nullable=False),
-    Column("application", Text, nullable=False),
-    Column("result_packed", LargeBinary, nullable=False),
-    Column("idempotency_key", Text),
-    Column("digest", String(64)),
-    Column("owner", Text),  # name of the API key that saved it
     Column("author", Text),
-    Column("revision", Text),
-    Column("ordering_code", Text),
-    # The gear that its page shows first, as it was judged then; null where an earlier version's reply can't be read.
+    Column("revision", Text),  # of a selection as its author calls it, of a machine the latest label
+    Column("note", Text),
+    Column("owner", Text),  # name of the API key that saved it
+    Column("caller", Text, nullable=False, server_default=""),  # hash of the key or address that has not saved it yet
+    # Counts changes of title block, common values, order and set of axes: callers name what they have seen by it.
+    Column("version", Integer, nullable=False, server_default="1"),
+    Column("search_text", Text, nullable=False, server_default=""),
+    Column("axes", Integer, nullable=False, server_default="0"),
+    Column("suitable", Integer, nullable=False, server_default="0"),
+    Column("unsuitable", Integer, nullable=False, server_default="0"),
+    Column("open", Integer, nullable=False, server_default="0"),
+    Column("revisions", Integer, nullable=False, server_default="0"),  # the number of the latest
+    # Of a selection the gear that its page shows first, as it was judged then; null where an earlier version's reply
+    # can't be read. Of a machine the largest utilisation of an axis with a suitable gear.
+    Column("selected", Text),
     Column("designation", Text),
     Column("status", Text),
     Column("utilisation", Double),
-    Column("search_text", Text, nullable=False, server_default=""),
-    # Counts its changes: whoever changes it names the version that they have seen.
-    Column("version", Integer, nullable=False, server_default="1"),
-    Index("selections_created", "created", "id"),
-    Index("selections_reference", "reference", "created", "id"),
-    Index("selections_idempotency_key", "idempotency_key", unique=True),
+    Column("ordering_code", Text),
+    Column("engine_version", Text, nullable=False),
+    Column("catalogue_version", Text, nullable=False),
+    Column("bytes", Integer, nullable=False, server_default="0"),  # of the axes' own parts
+    Column("numbers", Integer, nullable=False, server_default="0"),  # numbers of axes given so far
+    # Long texts stand last: what stands behind them is read through all their pages.
+    Column("common", Text, nullable=False, server_default="{}"),
+    Column("axis_order", Text, nullable=False, server_default="[]"),
+    Index("documents_saved", "kind", "saved", "id"),
+    Index("documents_reference", "reference", "saved", "id"),
+    Index("documents_created", "created"),
+    Index("documents_caller", "caller", "saved", "created"),
 )
 
-spent_keys = Table(
-    "spent_keys",
+
+def _of_document() -> Column[str]:
+    return Column("document", String(32), ForeignKey("documents.id", ondelete="CASCADE"), primary_key=True)
+
+
+axes = Table(
+    "axes",
+    metadata,
+    _of_document(),
+    Column("number", Integer, primary_key=True, autoincrement=False),
+    Column("version", Integer, nullable=False, server_default="1"),
+    Column("updated", UtcTime, nullable=False),
+    Column("updated_by", Text),
+    Column("removed", UtcTime),  # null while it is there; its number can bring it back
+    Column("name", Text),
+    Column("quantity", Integer, nullable=False, server_default="1"),
+    Column("note", Text),
+    Column("ordering_code", Text),
+    Column("without", Text, nullable=False, server_default="[]"),
+    Column("phases", Integer, nullable=False, server_default="0"),
+    # The answer.
+    Column("status", Text, nullable=False),
+    Column("selected", Text),
+    Column("designation", Text),
+    Column("governing_check", Text),
+    Column("utilisation", Double),
+    Column("life_L10_h", Double),
+    Column("shortest_life_h", Double),
+    Column("shortest_life_of", Text),
+    Column("natural_frequency_Hz", Double),
+    Column("motor_torque_limit_Nm", Double),
+    Column("weight_kg", Double),
+    Column("suitable", Integer),
+    Column("runner_up", Text),
+    Column("average_torque_Nm", Double),
+    Column("not_asked", Text, nullable=False, server_default="[]"),
+    Column("unknown", Text, nullable=False, server_default="[]"),  # figures of which an earlier version knew nothing
+    Column("faults", Text, nullable=False, server_default="[]"),
+    Column("engine_version", Text, nullable=False),
+    Column("catalogue_version", Text, nullable=False),
+    Column("application", Text, nullable=False),  # its own part, as it was sent
+    Index("axes_counts", "document", "removed", "status", "utilisation", "phases"),
+)
+
+revisions = Table(
+    "revisions",
+    metadata,
+    _of_document(),
+    Column("number", Integer, primary_key=True, autoincrement=False),
+    Column("label", Text, nullable=False),
+    Column("label_key", Text, nullable=False),  # in one case
+    Column("created", UtcTime, nullable=False),
+    Column("created_by", Text),
+    Column("author", Text),
+    Column("checked", Text),
+    Column("approved", Text),
+    Column("note", Text),
+    Column("axes", Integer, nullable=False),
+    Column("engine_version", Text, nullable=False),
+    Column("catalogue_version", Text, nullable=False),
+    # Frozen, and the reply to a selection byte for byte.
+    Column("content_packed", LargeBinary, nullable=False),
+    Column("result_packed", LargeBinary),
+    Index("revisions_label", "document", "label_key", unique=True),
+)
+
+idempotency_keys = Table(
+    "idempotency_keys",
     metadata,
     # Only a hash, because what is deleted is to be gone.
     Column("key_sha256", String(64), primary_key=True),
+    Column("digest", String(64)),
+    Column("document", String(32)),
+    Column("part", Text),  # of the document that the key has made: numbers of axes, or a label
+    Column("deleted", UtcTime),  # when its document was deleted
+    Index("idempotency_keys_document", "document"),
+)
+
+deletions = Table(
+    "deletions",
+    metadata,
+    Column("document", String(32), primary_key=True),
+    Column("kind", String(9), nullable=False),
     Column("deleted", UtcTime, nullable=False),
+    Index("deletions_deleted", "deleted", "document"),
 )
 
 catalogues = Table(
@@ -68,31 +172,4 @@ catalogues = Table(
     Column("version", Text, primary_key=True),
     # The JSON of every figure is some 100 kB; packed it is a fiftieth of that.
     Column("content_brotli", LargeBinary, nullable=False),
-)
-
-fleets = Table(
-    "fleets",
-    metadata,
-    Column("id", String(32), primary_key=True),
-    Column("created", UtcTime, nullable=False),
-    Column("saved", UtcTime),  # null while nobody has saved it: it goes by itself
-    Column("title", Text),
-    Column("reference", Text),
-    Column("author", Text),
-    Column("revision", Text),
-    Column("owner", Text),  # name of the API key that calculated or saved it
-    Column("caller", Text, nullable=False, server_default=""),  # hash of the key or address that calculated it
-    Column("version", Integer, nullable=False, server_default="1"),
-    Column("axes", Integer, nullable=False),
-    Column("selected", Integer, nullable=False),
-    Column("unsuitable", Integer, nullable=False),
-    Column("rejected", Integer, nullable=False),
-    Column("engine_version", Text, nullable=False),
-    Column("catalogue_version", Text, nullable=False),
-    # Tables in a format that packs them itself; the store does not read them.
-    Column("asked", LargeBinary, nullable=False),
-    Column("answers", LargeBinary, nullable=False),
-    Index("fleets_saved", "saved", "id"),
-    Index("fleets_created", "created"),
-    Index("fleets_caller", "caller", "saved", "created"),
 )

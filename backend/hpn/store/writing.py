@@ -1,128 +1,209 @@
-"""Statements of a transaction that saves, renames or deletes."""
+"""Statements of a transaction that saves, renames or deletes a document."""
 
 import asyncio
-import hashlib
-from collections.abc import Mapping
-from datetime import UTC, datetime
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 from typing import Any
 
 import brotli
-from sqlalchemy import ColumnElement, Table, delete, select, update
-from sqlalchemy.dialects import postgresql, sqlite
+import msgspec
+import orjson
+from sqlalchemy import ColumnElement, case, delete, func, select, update
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import copy_of
-from hpn.store.errors import KeyReusedError, KeySpentError
+from hpn.store.keys import insert_new, spend, take
+from hpn.store.records import LISTS, AxisDraft, DocumentKind, RevisionDraft
 from hpn.store.saved import Draft, packed, search_text
-from hpn.store.tables import catalogues, selections, spent_keys
+from hpn.store.tables import axes, catalogues, deletions, documents, revisions
+
+DELETIONS_LISTED = timedelta(days=366)
+SAVED_LABEL = "saved"
+"""Label of the first revision of what nobody has given one."""
+
+Row = dict[str, Any]
 
 
 async def insert(connection: AsyncConnection, draft: Draft) -> str:
-    """Id of the new selection, or of the one that the same idempotency key has saved before.
-
-    Raises KeyReusedError and KeySpentError; the caller then rolls the transaction back.
-    """
+    """Id of the new selection, or of the one that the same idempotency key has saved before; raises as `take`."""
+    if draft.idempotency_key is not None:
+        made = await take(connection, draft.idempotency_key, draft.digest, draft.id)
+        if made is not None:
+            return made.document
     if draft.catalogue is not None:
-        await _keep_catalogue(connection, draft.catalogue_version, draft.catalogue)
-    await _insert_new(connection, selections, _row_of(draft))
-    if draft.idempotency_key is None:
-        return draft.id
-    # After the insertion, which has waited for any other transaction that had this key in hand.
-    return await _holder(connection, draft.idempotency_key, draft.digest)
+        await keep_catalogue(connection, draft.catalogue_version, draft.catalogue)
+    axis = AxisDraft(draft.application, draft.phases, draft.columns, ordering_code=draft.ordering_code)
+    now = datetime.now(UTC)
+    if await insert_new(connection, documents, _selection_row(draft, now)):
+        await insert_axes(connection, draft.id, [(1, axis)], now, draft.owner)
+        await insert_revision(connection, draft.id, 1, _frozen(draft), now)
+    return draft.id
 
 
-def _row_of(draft: Draft) -> dict[str, Any]:
+def _selection_row(draft: Draft, now: datetime) -> Row:
+    named = ("title", "reference", "author", "revision", "ordering_code", "owner")
+    judged = ("selected", "designation", "status", "utilisation", "engine_version", "catalogue_version")
     return {
+        **{name: getattr(draft, name) for name in (*named, *judged)},
+        **counts_of([draft.status or "open"]),
         "id": draft.id,
-        "created": datetime.now(UTC),
-        "title": draft.title,
-        "reference": draft.reference,
-        "selected": draft.selected,
-        "engine_version": draft.engine_version,
-        "catalogue_version": draft.catalogue_version,
-        "application": draft.application.decode(),
-        "result_packed": packed(draft.result),
-        "idempotency_key": draft.idempotency_key,
-        "digest": draft.digest if draft.idempotency_key else None,
-        "owner": draft.owner,
-        "author": draft.author,
-        "revision": draft.revision,
-        "ordering_code": draft.ordering_code,
-        "designation": draft.designation,
-        "status": draft.status,
-        "utilisation": draft.utilisation,
+        "kind": "selection",
+        "created": now,
+        "updated": now,
+        "saved": now,
         "search_text": _search_text(draft),
+        "numbers": 1,
+        "revisions": 1,
+        "axis_order": "[1]",
+        "bytes": len(draft.application),
     }
 
 
+def _frozen(draft: Draft) -> RevisionDraft:
+    """First revision of a selection: what its page and its files show from then on."""
+    own, answer = msgspec.Raw(draft.application), draft.columns
+    lists = {name: msgspec.Raw(answer[name].encode()) for name in LISTS}
+    axis: Row = {
+        "number": 1,
+        "name": None,
+        "quantity": 1,
+        "note": None,
+        "ordering_code": draft.ordering_code,
+        "without": (),
+    }
+    axis |= {"application": own, "resolved": own, "answer": {**answer, **lists}}
+    block = {"title": draft.title, "reference": draft.reference, "author": draft.author, "note": None}
+    return RevisionDraft(
+        label=draft.label,
+        content=msgspec.json.encode({**block, "common": {}, "axes": [axis]}),
+        axes=1,
+        engine_version=draft.engine_version,
+        catalogue_version=draft.catalogue_version,
+        author=draft.author,
+        note=None if draft.label == draft.revision else draft.revision,
+        created_by=draft.owner,
+        result=draft.result,
+    )
+
+
+async def insert_axes(
+    connection: AsyncConnection, document: str, drafts: Sequence[tuple[int, AxisDraft]], now: datetime, by: str | None
+) -> None:
+    """Insert new axes by their numbers."""
+    rows = [{"document": document, "number": number, **axis_row(axis, now, by)} for number, axis in drafts]
+    if rows:
+        await connection.execute(axes.insert(), rows)
+
+
+def axis_row(axis: AxisDraft, now: datetime, by: str | None) -> Row:
+    """Columns of an axis."""
+    named = ("name", "quantity", "note", "ordering_code", "without", "phases")
+    own = {name: getattr(axis, name) for name in named} | {"application": axis.application.decode()}
+    return own | dict(axis.answer) | {"updated": now, "updated_by": by}
+
+
+async def insert_revision(
+    connection: AsyncConnection, document: str, number: int, draft: RevisionDraft, now: datetime
+) -> None:
+    """Insert a revision, which nothing changes any more."""
+    same = ("label", "axes", "engine_version", "catalogue_version", "author", "checked", "approved", "note")
+    row = {name: getattr(draft, name) for name in (*same, "created_by")} | {"document": document, "number": number}
+    row |= {"label_key": draft.label.casefold(), "created": now, "content_packed": packed(draft.content)}
+    row["result_packed"] = None if draft.result is None else packed(draft.result)
+    await connection.execute(revisions.insert(), row)
+
+
+def counts_of(states: Sequence[str]) -> Row:
+    """Numbers of axes by the status of each."""
+    return {"axes": len(states), **{state: states.count(state) for state in ("suitable", "unsuitable", "open")}}
+
+
+async def recount(connection: AsyncConnection, document: str, now: datetime) -> None:
+    """Bring the counts of a document up to what its axes are."""
+    c, d = axes.c, documents.c
+
+    def of(state: str) -> ColumnElement[int]:
+        return func.count(case((c.status == state, 1)))
+
+    best = func.max(case((c.status == "suitable", c.utilisation)))
+    query = select(func.count(), of("suitable"), of("unsuitable"), of("open"), best)
+    total, suitable, unsuitable, open, used = (
+        await connection.execute(query.where(c.document == document, c.removed.is_(None)))
+    ).one()
+    values = {"axes": total, "suitable": suitable, "unsuitable": unsuitable, "open": open, "updated": now}
+    await connection.execute(update(documents).where(d.id == document).values(values))
+    await connection.execute(update(documents).where(d.id == document, d.kind == "machine").values(utilisation=used))
+
+
 def _search_text(named: Any) -> str:
-    """Columns by which a selection is found, by their names."""
+    """Columns by which a document is found, by their names."""
     return search_text(named.title, named.reference, named.author, named.ordering_code, named.designation)
 
 
-async def _insert_new(connection: AsyncConnection, table: Table, *rows: dict[str, Any]) -> None:
-    """Insert rows unless those with the same unique key are there; SQLAlchemy has this for each database apart."""
-    dialect = sqlite if connection.dialect.name == "sqlite" else postgresql
-    await connection.execute(dialect.insert(table).values(rows).on_conflict_do_nothing())
-
-
-async def _keep_catalogue(connection: AsyncConnection, version: str, catalogue: Catalogue) -> None:
+async def keep_catalogue(connection: AsyncConnection, version: str, catalogue: Catalogue) -> None:
+    """Keep a copy of a catalogue, unless there is one."""
     known = select(catalogues.c.version).where(catalogues.c.version == version)
     if (await connection.execute(known)).one_or_none() is None:
         content = await asyncio.to_thread(lambda: brotli.compress(copy_of(catalogue)))
-        await _insert_new(connection, catalogues, {"version": version, "content_brotli": content})
+        await insert_new(connection, catalogues, {"version": version, "content_brotli": content})
 
 
-async def _holder(connection: AsyncConnection, key: str, digest: str) -> str:
-    """Id of the selection that holds an idempotency key."""
-    spent = select(spent_keys.c.key_sha256).where(spent_keys.c.key_sha256 == _hash(key))
-    holding = select(selections.c.id, selections.c.digest).where(selections.c.idempotency_key == key)
-    is_spent = (await connection.execute(spent)).one_or_none() is not None
-    held = None if is_spent else (await connection.execute(holding)).one_or_none()
-    if held is None:  # deleted, if not before then by another transaction a moment ago
-        raise KeySpentError(
-            "the selection saved under this idempotency key has been deleted; take a new key to save it anew"
-        )
-    if held.digest != digest:
-        raise KeyReusedError(
-            "this idempotency key was used before, with other content; take a new key for a new selection"
-        )
-    return str(held.id)
+SEARCHED = ("title", "reference", "author", "ordering_code", "designation")
 
 
 async def rename(
-    connection: AsyncConnection, id: str, names: Mapping[str, str | None], version: int | None = None
+    connection: AsyncConnection,
+    id: str,
+    names: Mapping[str, str | None],
+    version: int | None = None,
+    kind: DocumentKind | None = None,
 ) -> bool:
-    """Give a selection another title or reference; False where there is none, or none in the version that is given."""
-    c = selections.c
-    columns = (c.title, c.reference, c.author, c.ordering_code, c.designation)
-    state = in_version(selections, id, version)
-    row = (await connection.execute(select(*columns).where(*state).with_for_update())).one_or_none()
+    """Change parts of the title block of a saved document; False where there is none, or none in the version given."""
+    c = documents.c
+    state = [*in_version(id, version, kind), c.saved.is_not(None)]
+    row = (
+        await connection.execute(select(*(c[name] for name in SEARCHED)).where(*state).with_for_update())
+    ).one_or_none()
     if row is None:
         return False
-    named = SimpleNamespace(**{**row._asdict(), **names})
-    values = {"title": named.title, "reference": named.reference, "search_text": _search_text(named)}
-    renamed = update(selections).where(*state).values(**values, version=c.version + 1).returning(c.id)
+    found = _search_text(SimpleNamespace(**{**row._asdict(), **names}))
+    values = {**names, "search_text": found, "version": c.version + 1, "updated": datetime.now(UTC)}
+    renamed = update(documents).where(*state).values(values).returning(c.id)
     return (await connection.execute(renamed)).one_or_none() is not None
 
 
-async def remove(connection: AsyncConnection, id: str, version: int | None = None) -> bool:
-    """Delete a selection, and remember that its idempotency key is spent; False where there is none, as `rename`."""
-    statement = delete(selections).where(*in_version(selections, id, version)).returning(selections.c.idempotency_key)
-    gone = (await connection.execute(statement)).one_or_none()
-    if gone is not None and gone.idempotency_key is not None:
-        spent = {"key_sha256": _hash(gone.idempotency_key), "deleted": datetime.now(UTC)}
-        await _insert_new(connection, spent_keys, spent)
-    return gone is not None
+async def remove(
+    connection: AsyncConnection, id: str, version: int | None = None, kind: DocumentKind | None = None
+) -> bool:
+    """Delete a document with its axes and revisions, and remember that it was there and that its idempotency keys are
+    spent; False where there is none, as `rename`."""
+    c, now = documents.c, datetime.now(UTC)
+    gone = delete(documents).where(*in_version(id, version, kind)).returning(c.kind, c.saved)
+    row = (await connection.execute(gone)).one_or_none()
+    if row is None:
+        return False
+    await spend(connection, id, now)
+    if row.saved is not None:
+        await connection.execute(delete(deletions).where(deletions.c.deleted < now - DELETIONS_LISTED))
+        await insert_new(connection, deletions, {"document": id, "kind": row.kind, "deleted": now})
+    return True
 
 
-def in_version(table: Table, id: str, version: int | None) -> list[ColumnElement[bool]]:
-    """Condition for a row in the version that somebody has seen: a change since then leaves none. None: any version."""
-    c = table.c
-    return [c.id == id] if version is None else [c.id == id, c.version == version]
+def in_version(id: str, version: int | None, kind: DocumentKind | None = None) -> list[ColumnElement[bool]]:
+    """Condition for a document in the version that somebody has seen: a change since then leaves none. None: any."""
+    c = documents.c
+    conditions = [c.id == id, *([] if version is None else [c.version == version])]
+    return conditions if kind is None else [*conditions, c.kind == kind]
 
 
-def _hash(key: str) -> str:
-    return hashlib.sha256(key.encode()).hexdigest()
+def order_of(text: str) -> list[int]:
+    """Numbers of axes in their order, as they are kept."""
+    numbers: list[int] = orjson.loads(text)
+    return numbers
+
+
+def order_text(numbers: Sequence[int]) -> str:
+    """The same as it is kept."""
+    return orjson.dumps(numbers).decode()

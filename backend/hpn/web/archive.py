@@ -13,10 +13,13 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import OrderingCode, read_ordering_code
+from hpn.documents import answers
+from hpn.documents.revision import SAVED, is_label
 from hpn.engine.kept import UnreadableReplyError, decode, fields_of
 from hpn.engine.selection import Selection, encode, select
 from hpn.explain.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
+from hpn.web.columns import columns_of
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
@@ -117,6 +120,7 @@ def draft_of(
     code = _ordered(catalogue, selection, labels.ordering_code)
     shown = selection.foremost if code is None else selection.candidate(code.gear.designation)
     assert shown is not None  # `_ordered` refuses what is no candidate
+    revision, cycle = labels.revision or "", application.duty_cycle
     return Draft(
         application=application.model_dump_json(exclude_unset=True).encode(),
         result=encode(selection),
@@ -134,6 +138,9 @@ def draft_of(
         idempotency_key=key,
         owner=owner,
         catalogue=catalogue,
+        answer=columns_of(answers.answer_of(selection, shown, catalogue)),
+        phases=len(cycle.motion.moves if cycle.motion else cycle.phases or ()),
+        label=revision if is_label(revision) else SAVED,
     )
 
 
@@ -144,7 +151,7 @@ def _ordered(catalogue: Catalogue, selection: Selection, text: str | None) -> Or
     code = read_ordering_code(catalogue, text)
     if isinstance(code, OrderingCode) and selection.candidate(code.gear.designation) is None:
         values = {"gear": code.gear.designation}
-        code = Sentence(N_("{gear} is not a candidate: the selected ratios or sizes exclude it"), values)
+        code = Sentence(answers.NO_CANDIDATE, values)
     if isinstance(code, Sentence):
         raise InputError((("ordering_code",), code))
     return code

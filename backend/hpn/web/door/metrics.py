@@ -106,7 +106,8 @@ class CountedStore(Store):
 
     def __init__(self, metrics: Metrics, address: str, *, seconds: float, password: str | None) -> None:
         super().__init__(address, seconds=seconds, password=password)
-        for name, function in vars(Store).items():
+        inherited = (each for kind in reversed(Store.__mro__[:-1]) for each in vars(kind).items())
+        for name, function in inherited:
             if not name.startswith("_") and name not in NOT_COUNTED:
                 setattr(self, name, _counted(metrics, name, MethodType(function, self)))
 

@@ -16,7 +16,7 @@ import xlsxwriter
 from hpn.files.workbook import EveryDigit
 from hpn.fleet.faults import Reason, reasons_of
 from hpn.fleet.listing import NEAREST
-from hpn.fleet.machine import as_parquet, table_of
+from hpn.fleet.machine import as_parquet
 from hpn.fleet.outcome import FAULTS
 from hpn.tables.cells import harmless
 from hpn.words.reader import Reader
@@ -25,12 +25,12 @@ LONGEST_CELL = 32_767
 """Characters that a cell of XLSX holds."""
 
 
-def file_of(answers: bytes, created: datetime, suffix: str, reader: Reader) -> bytes:
+def file_of(answers: pa.Table, created: datetime, suffix: str, reader: Reader) -> bytes:
     """The answers of a fleet in the format of a suffix, with the columns that `hpn fleet` gives them.
 
     Reasons are in the reader's language where people read them.
     """
-    table = table_of(answers).drop_columns(NEAREST.names)
+    table = answers.drop_columns(NEAREST.names)
     if suffix == "parquet":
         return as_parquet(_told(table, Reader("en")))
     told = _told(table, reader)
@@ -38,15 +38,14 @@ def file_of(answers: bytes, created: datetime, suffix: str, reader: Reader) -> b
 
 
 def _told(table: pa.Table, reader: Reader) -> pa.Table:
-    """Answers with the reasons of rejected axes as texts; those of an earlier version stay as they are."""
-    if FAULTS not in table.column_names:
-        return table
+    """Answers with the reasons of rejected axes as texts."""
     errors = [_reasons_in(reasons_of(cell), reader) for cell in table[FAULTS].to_pylist()]
     return table.drop_columns(FAULTS).append_column("error", pa.array(errors, pa.string()))
 
 
 def _reasons_in(reasons: Sequence[Reason], reader: Reader) -> str | None:
-    return "; ".join(f"{reason.column}: {reader.told(reason.sentence)}" for reason in reasons) or None
+    texts = [(reason.column, reader.told(reason.sentence)) for reason in reasons]
+    return "; ".join(": ".join(filter(None, each)) for each in texts) or None
 
 
 def _csv(table: pa.Table) -> bytes:

@@ -1,16 +1,16 @@
 """A fleet as one HTML file: what its page shows, with styles and a script inside."""
 
+from collections.abc import Iterable
 from contextvars import copy_context
 from typing import Any
 
-import pyarrow as pa
 from jinja2 import Environment
 from markupsafe import Markup
 from starlette.datastructures import State
 
 from hpn import ENGINE_VERSION
+from hpn.application import Application
 from hpn.catalogue import Catalogue
-from hpn.fleet.columns import AXIS
 from hpn.fleet.listing import Listing, applications_of, rows_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.door.visit import VISIT, Visit
@@ -22,7 +22,6 @@ from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 from hpn.words.titles import faults_of
 
-ALLOWED = "requirements.utilisation"
 STYLE, SCRIPT = "report.css", "fleet-report.js"
 
 
@@ -33,9 +32,9 @@ def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "",
     """
     rows, summary = rows_of(listing.answers), listing.summary
     top = foremost(rows) if len(rows) == summary.axes else None
-    view = FleetView(
-        summary, by_need(rows), links_of(listing.axes, base), allowed_of(listing.axes), top, weights_of(catalogue)
-    )
+    places = {row.axis: row.place for row in rows}
+    asked = [(places[axis], axis, application) for axis, application in applications_of(listing.axes)]
+    view = FleetView(summary, by_need(rows), links_of(asked, base), allowed_of(asked), top, weights_of(catalogue))
     return copy_context().run(
         _told, Reader(language), view=view, name=name, base=base, catalogue_version=catalogue.version
     )
@@ -50,18 +49,20 @@ def _told(reader: Reader, **values: Any) -> str:
     )
 
 
-def links_of(axes: pa.Table, base: str = "") -> dict[str, str]:
+Placed = tuple[int, str, Application]
+"""Place of an axis in its list, its name, and what it asks."""
+
+
+def links_of(axes: Iterable[Placed], base: str = "") -> dict[int, str]:
     """Link of each axis with its name as title, where that can be one; one that is too long for an address has none."""
-    found = ((axis, to_link(application) + _titled(axis)) for axis, application in applications_of(axes))
-    return {axis: base + link for axis, link in found if len(link) <= MAXIMUM_QUERY_BYTES}
+    found = ((place, to_link(application) + _titled(name)) for place, name, application in axes)
+    return {place: base + link for place, link in found if len(link) <= MAXIMUM_QUERY_BYTES}
 
 
-def allowed_of(axes: pa.Table) -> dict[str, float]:
+def allowed_of(axes: Iterable[Placed]) -> dict[int, float]:
     """Utilisation that an axis may reach, for those that ask for less than 1."""
-    if ALLOWED not in axes.column_names:
-        return {}
-    pairs = zip(axes[AXIS].to_pylist(), axes[ALLOWED].to_pylist(), strict=True)
-    return {axis: allowed for axis, allowed in pairs if allowed is not None and allowed < 1}
+    found = ((place, application.requirements.utilisation) for place, _, application in axes)
+    return {place: allowed for place, allowed in found if allowed < 1}
 
 
 def _titled(axis: str) -> str:

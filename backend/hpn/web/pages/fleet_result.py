@@ -1,57 +1,111 @@
-"""A fleet that was sized, on its way into the store and out of it. Arrow is imported by this module."""
+"""A machine that was sized, on its way into the store and out of it. Arrow is imported by this module."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
+import msgspec
 import pyarrow as pa
-import pyarrow.compute as pc
+from msgspec import structs
 
 from hpn import ENGINE_VERSION
+from hpn.application import Application
 from hpn.catalogue import Catalogue
+from hpn.documents.answers import Asked, AxisAnswer, AxisFault, answers
+from hpn.documents.axis import Axis
+from hpn.documents.merge import resolve
 from hpn.explain.comparison import is_same
-from hpn.fleet.columns import AXIS
+from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.faults import Reason, reasons_of
-from hpn.fleet.listing import AxisRow, rows_of
+from hpn.fleet.listing import NEAREST, AxisRow, rows_of
 from hpn.fleet.machine import Kept, table_of
-from hpn.fleet.outcome import FAULTS
+from hpn.fleet.outcome import FAULTS, answer_fields, located
 from hpn.fleet.summary import Summary, summary_of
-from hpn.store import FleetDraft, SavedFleet
+from hpn.store import AxisDraft, Machine, MachineDraft, SavedAxis
+from hpn.web.columns import answer_in, common_of, resolved
+from hpn.web.columns import draft_of as draft_of_axis
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
 
 
-def draft_of(kept: Kept, catalogue: Catalogue) -> FleetDraft:
-    """Fleet to be kept of axes that were sized."""
-    summary = kept.summary
-    return FleetDraft(
-        axes=summary.axes,
-        selected=summary.selected,
-        unsuitable=summary.unsuitable,
-        rejected=summary.rejected,
-        engine_version=ENGINE_VERSION,
-        catalogue_version=catalogue.version,
-        asked=kept.axes,
-        answers=kept.answers,
-    )
+def draft_of(kept: Kept, catalogue: Catalogue) -> MachineDraft:
+    """Machine to be kept of axes that were sized."""
+    asked = {cells.pop(AXIS): cells for cells in table_of(kept.axes).to_pylist()}
+    rows = table_of(kept.answers).select([AXIS, FAULTS]).to_pylist()
+    owns = [COLUMNS.application_of(asked[row[AXIS]]) if row[FAULTS] is None else {} for row in rows]
+    found = answers([Asked(resolve(own, {})) for own in owns], catalogue)
+    drafts = [_axis(row, own, answer) for row, own, answer in zip(rows, owns, found, strict=True)]
+    return MachineDraft(drafts, ENGINE_VERSION, catalogue.version)
+
+
+def _axis(row: Mapping[str, Any], own: dict[str, Any], answer: AxisAnswer) -> AxisDraft:
+    """An axis of a table under its name there; one that was rejected is open, for the same reasons."""
+    if row[FAULTS] is not None:
+        answer = structs.replace(answer, faults=tuple(map(_fault, reasons_of(row[FAULTS]))))
+    return replace(draft_of_axis(Axis(application=own), answer), name=row[AXIS] or None)
+
+
+def _fault(reason: Reason) -> AxisFault:
+    """Fault of a cell, whose place is the column of the table."""
+    return AxisFault.at(f"/{reason.column.replace('.', '/')}", reason.sentence, reason.code)
 
 
 class Shown(NamedTuple):
-    """A fleet that was kept, ready to be shown."""
+    """A machine that was kept, ready to be shown."""
 
     summary: Summary
     rows: list[AxisRow]
 
 
-def shown_of(saved: SavedFleet) -> Shown:
-    """Counts and rows of a saved fleet."""
-    answers = table_of(saved.answers)
-    return Shown(summary_of(answers.to_batches()), rows_of(answers))
+def shown_of(machine: Machine) -> Shown:
+    """Counts and rows of a machine."""
+    table = answers_of(machine)
+    return Shown(summary_of(table.to_batches()), rows_of(table))
 
 
-def asked_of(saved: SavedFleet, names: list[str]) -> pa.Table:
-    """Inputs of some axes."""
-    asked = table_of(saved.asked)
-    return asked.filter(pc.is_in(asked[AXIS], pa.array(names, pa.string())))
+def answers_of(machine: Machine) -> pa.Table:
+    """Answers of the axes of a machine, with the columns of a listing."""
+    fields = [*answer_fields(pa.string()), *NEAREST]
+    table = pa.Table.from_pylist([_cells(axis) for axis in machine.items], pa.schema(fields))
+    return table.drop_columns("error")  # which is what is shown of the reasons
+
+
+def _cells(axis: SavedAxis) -> dict[str, Any]:
+    return {AXIS: axis.name or str(axis.number), **_judged(answer_in(axis.answer))}
+
+
+def _judged(answer: AxisAnswer) -> dict[str, Any]:
+    """Answer of an axis as a listing has it: figures of the selected gear, or the nearest miss where none suits."""
+    if answer.status == "open":
+        return {FAULTS: msgspec.json.encode(reasons(answer.faults)).decode()}
+    brief = {"suitable": answer.suitable, "average_torque_Nm": answer.average_torque_Nm}
+    if answer.selected is None:
+        nearest = (answer.designation, answer.governing_check, answer.utilisation)
+        return brief | dict(zip(NEAREST.names, nearest, strict=True))
+    figures = ("selected", "governing_check", "utilisation", "life_L10_h", "shortest_life_h", "motor_torque_limit_Nm")
+    brief |= {name: getattr(answer, name) for name in (*figures, "runner_up")}
+    known = "shortest_life_h" not in answer.unknown
+    return brief | {"shortest_life_of": answer.shortest_life_of if known else ""}
+
+
+def reasons(faults: Iterable[AxisFault]) -> list[Reason]:
+    """Faults as a listing says them: by the columns of a table."""
+    return [_reason(fault) for fault in faults]
+
+
+def _reason(fault: AxisFault) -> Reason:
+    if not fault.pointer:
+        return Reason("", fault.code, fault.told)
+    found = located(0, fault.location, fault.told, fault.code)
+    return Reason(found.column, found.code, found.reason)
+
+
+def asked_of(machine: Machine, places: Collection[int]) -> list[tuple[int, str, Application]]:
+    """Place, name and application of some axes, of those that have one."""
+    common = common_of(machine)
+    shown = [(place, axis) for place, axis in enumerate(machine.items, 1) if place in places]
+    found = ((place, axis, resolved(axis, common).application) for place, axis in shown)
+    return [(place, axis.name or str(axis.number), application) for place, axis, application in found if application]
 
 
 # --- Today ------------------------------------------------------------------------------------------------------------
@@ -66,12 +120,21 @@ class Changed(NamedTuple):
     reasons: Sequence[Reason]
 
 
-def changes(saved: SavedFleet, answers: Sequence[dict[str, Any]]) -> list[Changed]:
+def changes(machine: Machine, catalogue: Catalogue) -> list[Changed]:
     """Axes that are answered otherwise today, out of those that had an answer."""
-    before = table_of(saved.answers)
-    then = {row[AXIS]: row for row in before.filter(pc.is_valid(before["suitable"])).to_pylist()}
-    pairs = ((row[AXIS], then[row[AXIS]], row) for row in answers)
-    return [Changed(*pair, reasons_of(pair[2][FAULTS])) for pair in pairs if _differs(*pair[1:])]
+    had = [axis for axis in machine.items if axis.answer["status"] != "open"]
+    common = common_of(machine)
+    today = answers([Asked(resolved(axis, common), axis.ordering_code) for axis in had], catalogue)
+    found = []
+    for axis, now in zip(had, today, strict=True):
+        before, after = _compared(answer_in(axis.answer)), _compared(now)
+        if _differs(before, after):
+            found.append(Changed(axis.name or str(axis.number), before, after, reasons(now.faults)))
+    return found
+
+
+def _compared(answer: AxisAnswer) -> dict[str, Any]:
+    return dict.fromkeys(COMPARED) | _judged(answer)
 
 
 def _differs(saved: Mapping[str, Any], today: Mapping[str, Any]) -> bool:

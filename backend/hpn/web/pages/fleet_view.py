@@ -70,8 +70,8 @@ class FleetView:
 
     summary: "Summary"
     rows: Sequence["AxisRow"]
-    links: Mapping[str, str] = field(default_factory=dict)
-    allowed: Mapping[str, float] = field(default_factory=dict)
+    links: Mapping[int, str] = field(default_factory=dict)
+    allowed: Mapping[int, float] = field(default_factory=dict)
     """Utilisation that an axis may reach, where it is below 1."""
 
     top: "AxisRow | None" = None
@@ -89,7 +89,7 @@ class FleetView:
 
     def bound(self, row: "AxisRow") -> float:
         """Largest utilisation with which the governing check of an axis passes."""
-        return allowed(row.governing_check, self.allowed.get(row.axis, 1.0))
+        return allowed(row.governing_check, self.allowed.get(row.place, 1.0))
 
     def choose(self, name: str, value: str) -> str:
         """Address of the axes that a count counts."""

@@ -19,8 +19,8 @@ from hpn.catalogue import Catalogue
 from hpn.fleet.beside import read_machine
 from hpn.fleet.faults import Fault
 from hpn.fleet.order import MOST_AXES, MOST_PHASES
-from hpn.store import FleetDraft, NoRoomError, ShareSpentError, StoreUnavailableError
-from hpn.store.fleets import MOST_OF_CALLER
+from hpn.store import MachineDraft, NoRoomError, ShareSpentError, StoreUnavailableError
+from hpn.store.machines import MOST_OF_CALLER
 from hpn.tables.files import Wanted, packed, unpacked
 from hpn.tables.reading import Reading
 from hpn.tables.table import Table
@@ -176,7 +176,7 @@ async def _sized(request: Request, taken: Taken) -> str:
     try:
         await store.require_room(caller, most_bytes)
         draft = await _calculated(request, taken)
-        id: str = await store.keep_fleet(replace(draft, owner=request.state.api_key, caller=caller), most_bytes)
+        id: str = await store.keep_machine(replace(draft, owner=request.state.api_key, caller=caller), most_bytes)
     except ShareSpentError:
         spent = Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})
         raise Problem.later(spent, NO_ROOM_SECONDS, 429) from None
@@ -186,7 +186,7 @@ async def _sized(request: Request, taken: Taken) -> str:
     return id
 
 
-async def _calculated(request: Request, taken: Taken) -> FleetDraft:
+async def _calculated(request: Request, taken: Taken) -> MachineDraft:
     """Fleet of a table; raises Problem."""
     catalogue = request.app.state.catalogue
     work = await compute(request, "pages", _work, taken, catalogue)
@@ -199,7 +199,7 @@ def _work(taken: Taken, catalogue: Catalogue) -> Callable[[], Any]:
     return partial(kept_of, taken.rows, taken.faults, dict(taken.origins), catalogue)
 
 
-def _kept(*arguments: Any) -> FleetDraft:
+def _kept(*arguments: Any) -> MachineDraft:
     from hpn.web.pages.fleet_result import draft_of
 
     return draft_of(*arguments)

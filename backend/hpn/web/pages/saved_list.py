@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from hpn.store import SavedFleet, SavedSelection, Store
+from hpn.store import Machine, SavedSelection, Store
 from hpn.web.archive import Line, changeable, not_found
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
@@ -89,7 +89,7 @@ def changed_since() -> Problem:
     return Problem(412, CHANGED)
 
 
-def names_of(fields: Mapping[str, str], saved: SavedSelection | SavedFleet) -> dict[str, str | None]:
+def names_of(fields: Mapping[str, str], saved: SavedSelection | Machine) -> dict[str, str | None]:
     """Title and reference of a form that renames; Problem 422 for what can't be one, unless it was one before."""
     names = {"title": fields.get("title", "").strip(), "ref": fields.get("ref", "").strip()}
     faults = [

@@ -4,7 +4,7 @@ It is kept for a day, and for good once it is saved with its title block: the pr
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from string import punctuation
 from typing import Any
@@ -15,16 +15,17 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
-from hpn.catalogue import Catalogue
-from hpn.store import SavedFleet, StoreUnavailableError
-from hpn.web.door.access import admit, key_needed
+from hpn.documents.revision import SAVED, is_label
+from hpn.store import Machine, RevisionDraft, StoreUnavailableError
+from hpn.web.columns import revision_of
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
-from hpn.web.fleets import worked
 from hpn.web.form.labels import FIELDS, TITLE_BLOCK
+from hpn.web.machines import require_seen
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, SORTINGS, Chosen, FleetPageView, foremost, weights_of
 from hpn.web.pages.rendering import or_reason, page, reason
@@ -46,7 +47,6 @@ REASON = "fleet_refused.html"
 """Page that says why there is nothing to show."""
 
 CHANGES_ON_PAGE = 100
-NOT_YOURS = N_("Only the key that calculated this machine may see it and save it.")
 SAVED_MEANWHILE = N_("This machine has since been saved under other names. Open it again, then rename it.")
 GONE = N_("There is no such machine. An unsaved machine is kept for a day.")
 
@@ -79,14 +79,12 @@ async def show(request: Request) -> Response:
     return await _shown(request, await _found(request), 200, EMPTY)
 
 
-async def _shown(request: Request, saved: SavedFleet, status: int, form: TitleBlock) -> Response:
-    today, problem = await _today(request, saved)
-    return await compute(request, "pages", _page, request, saved, status, form, today, problem)
+async def _shown(request: Request, saved: Machine, status: int, form: TitleBlock) -> Response:
+    today = await _today(request, saved)
+    return await compute(request, "pages", _page, request, saved, status, form, today)
 
 
-def _page(
-    request: Request, saved: SavedFleet, status: int, form: TitleBlock, today: list[Any] | None, problem: str
-) -> Response:
+def _page(request: Request, saved: Machine, status: int, form: TitleBlock, today: list[Any] | None) -> Response:
     from hpn.web.pages import fleet_report, fleet_result
 
     summary, rows = fleet_result.shown_of(saved)
@@ -94,8 +92,7 @@ def _page(
     found = chosen.out_of(rows)
     part = found[(chosen.part - 1) * ROWS_ON_PAGE : chosen.part * ROWS_ON_PAGE]
     top = foremost(rows)
-    shown = {row.axis for row in part if row.state != "rejected"} | ({top.axis} if top else set())
-    asked = fleet_result.asked_of(saved, list(shown))
+    asked = fleet_result.asked_of(saved, {row.place for row in (*part, *((top,) if top else ()))})
     links, allowed = fleet_report.links_of(asked), fleet_report.allowed_of(asked)
     weights = weights_of(request.app.state.catalogue)
     view = FleetPageView(summary, part, links, allowed, top, weights, f"{ADDRESS}/{saved.id}", chosen, len(found))
@@ -109,7 +106,6 @@ def _page(
         shown=SHOWN,
         sortings=SORTINGS,
         today=today,
-        problem=problem,
         engine_version=ENGINE_VERSION,
         catalogue_version=request.app.state.catalogue.version,
         most_changes=CHANGES_ON_PAGE,
@@ -117,24 +113,14 @@ def _page(
     )
 
 
-async def _today(request: Request, saved: SavedFleet) -> tuple[list[Any] | None, str]:
-    """Axes that today's engine and catalogue answer otherwise, None where these are the same; or the reason."""
+async def _today(request: Request, saved: Machine) -> list[Any] | None:
+    """Axes that today's engine and catalogue answer otherwise; None where these are the same."""
     catalogue = request.app.state.catalogue
-    if (saved.engine_version, saved.catalogue_version) == (ENGINE_VERSION, catalogue.version):
-        return None, ""
-    if saved.axes == saved.rejected:
-        return [], ""
-    try:
-        answers = await worked(request, await compute(request, "pages", _again, saved, catalogue))
-        return await compute(request, "exports", _changes, saved, answers), ""
-    except Problem as error:
-        return None, error.detail
-
-
-def _again(saved: SavedFleet, catalogue: Catalogue) -> Callable[[], Any]:
-    from hpn.fleet.machine import answers_today
-
-    return partial(answers_today, saved.asked, catalogue)
+    versions = {(axis.answer["engine_version"], axis.answer["catalogue_version"]) for axis in saved.items}
+    if versions <= {(ENGINE_VERSION, catalogue.version)}:
+        return None
+    found: list[Any] = await compute(request, "batches", _changes, saved, catalogue)
+    return found
 
 
 def _changes(*arguments: Any) -> Any:
@@ -143,21 +129,12 @@ def _changes(*arguments: Any) -> Any:
     return fleet_result.changes(*arguments)
 
 
-async def _found(request: Request) -> SavedFleet:
-    saved: SavedFleet | None = await request.app.state.store.find_fleet(request.path_params["fleet"])
+async def _found(request: Request) -> Machine:
+    saved: Machine | None = await request.app.state.store.find_machine(request.path_params["fleet"])
     if saved is None:
         raise Problem(404, GONE)
-    if saved.saved is None and saved.owner is not None and request.app.state.gate.has_keys:
-        _require_key(request, saved.owner)
+    require_seen(request, saved)
     return saved
-
-
-def _require_key(request: Request, owner: str) -> None:
-    """Raise Problem 403 for another key than the one that calculated a fleet, 401 without any."""
-    if request.state.api_key is None:
-        raise key_needed(request.scope["path"])
-    if request.state.api_key != owner:
-        raise Problem(403, NOT_YOURS)
 
 
 async def download(request: Request) -> Response:
@@ -181,11 +158,12 @@ async def download(request: Request) -> Response:
     return Response(content, 200, headers, MEDIA_TYPES[suffix])
 
 
-def _file(saved: SavedFleet, suffix: str, reader: Reader) -> Callable[[], bytes]:
+def _file(saved: Machine, suffix: str, reader: Reader) -> Callable[[], bytes]:
     """The call that makes a file."""
+    from hpn.web.pages import fleet_result
     from hpn.web.pages.fleet_files import file_of
 
-    return partial(file_of, saved.answers, saved.created, suffix, reader)
+    return partial(file_of, fleet_result.answers_of(saved), saved.created, suffix, reader)
 
 
 # --- Saving, listing, renaming, deleting ------------------------------------------------------------------------------
@@ -201,10 +179,19 @@ async def save(request: Request) -> Response:
     if not form.is_sound:
         return await _shown(request, saved, 422, form)
     names = {FIELDS[name]: text or None for name, text in form.labels.items()}
-    if not await request.app.state.store.save_fleet(saved.id, names, request.state.api_key):
+    first = await compute(request, "pages", _first_revision, saved, names)
+    if not await request.app.state.store.save_machine(saved.id, names, request.state.api_key, first):
         await _require_same(request, names)
     note(request, fleet=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
+
+
+def _first_revision(saved: Machine, names: Mapping[str, str | None]) -> RevisionDraft:
+    """The machine as it is saved, under its revision where that can be a label."""
+    text = names["revision"]
+    label = text if text and is_label(text) else SAVED
+    named = replace(saved, title=names["title"], reference=names["reference"], author=names["author"])
+    return revision_of(named, label, author=names["author"], note=None if label == text else text)
 
 
 async def _require_same(request: Request, names: Mapping[str, str | None]) -> None:
@@ -219,7 +206,7 @@ async def show_saved(request: Request) -> Response:
     """Saved fleets, newest first."""
     cursor = request.query_params.get("cursor") or None
     try:
-        lines, following = await request.app.state.store.fleets(cursor)
+        lines, following = await request.app.state.store.machines(cursor)
     except ValueError:
         return RedirectResponse(f"{ADDRESS}/saved", 303)
     shown = {"lines": lines, "following": following, "later": bool(cursor)}
@@ -233,7 +220,7 @@ async def rename(request: Request) -> Response:
     fields = dict(pairs_of(await read_form(request)))
     saved, version = await _own(request), version_of(fields)
     names = names_of(fields, saved)
-    if not await request.app.state.store.rename_fleet(saved.id, names, version):
+    if not await request.app.state.store.rename(saved.id, names, version, "machine"):
         raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
     note(request, fleet=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
@@ -252,13 +239,13 @@ async def delete(request: Request) -> Response:
     given = "content-type" in request.headers  # a script may send no body
     version = version_of(dict(pairs_of(await read_form(request)))) if given else None
     saved = await _own(request)
-    if not await request.app.state.store.delete_fleet(saved.id, version):
+    if not await request.app.state.store.delete(saved.id, version, "machine"):
         raise Problem(404, GONE) if version is None else changed_since()
     note(request, fleet=saved.id)
     return RedirectResponse(f"{ADDRESS}/saved", 303)
 
 
-async def _own(request: Request) -> SavedFleet:
+async def _own(request: Request) -> Machine:
     saved = await _found(request)
     gate = request.app.state.gate
     if gate.has_keys:

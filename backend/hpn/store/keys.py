@@ -1,0 +1,73 @@
+"""Idempotency keys: the same key with the same content makes a thing once, also after its deletion."""
+
+import hashlib
+from datetime import datetime
+from typing import Any, NamedTuple
+
+from sqlalchemy import Table, select, update
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.ext.asyncio import AsyncConnection
+
+from hpn.store.errors import KeyReusedError, KeySpentError
+from hpn.store.tables import idempotency_keys
+
+
+class Once(NamedTuple):
+    """Idempotency key, and the fingerprint of what it came with."""
+
+    key: str
+    digest: str
+
+
+class Made(NamedTuple):
+    """What a key has made: a document, or a part of one."""
+
+    document: str
+    part: str | None
+
+
+async def insert_new(connection: AsyncConnection, table: Table, row: dict[str, Any]) -> bool:
+    """Insert a row; False where one with the same key is there. SQLAlchemy has this for each database apart."""
+    dialect = sqlite if connection.dialect.name == "sqlite" else postgresql
+    new = dialect.insert(table).values(row).on_conflict_do_nothing().returning(*table.primary_key)
+    return (await connection.execute(new)).first() is not None
+
+
+async def take(connection: AsyncConnection, key: str, digest: str, document: str) -> Made | None:
+    """What the key has made before; None where it is this transaction's, which now makes it for a document.
+
+    The insertion waits for any other transaction that has the key in hand. Raises KeyReusedError and KeySpentError; the
+    caller then rolls the transaction back.
+    """
+    hashed, c = hash_of(key), idempotency_keys.c
+    row = {"key_sha256": hashed, "digest": digest, "document": document}
+    is_new = await insert_new(connection, idempotency_keys, row)
+    found = select(c.digest, c.document, c.part, c.deleted).where(c.key_sha256 == hashed)
+    held = (await connection.execute(found)).one_or_none()
+    if held is None or held.deleted is not None:
+        raise KeySpentError(
+            "the selection saved under this idempotency key has been deleted; take a new key to save it anew"
+        )
+    if held.digest != digest:
+        raise KeyReusedError(
+            "this idempotency key was used before, with other content; take a new key for a new selection"
+        )
+    return None if is_new else Made(held.document, held.part)
+
+
+async def keep_part(connection: AsyncConnection, key: str, part: str) -> None:
+    """Remember what a key has made of its document."""
+    made = update(idempotency_keys).where(idempotency_keys.c.key_sha256 == hash_of(key)).values(part=part)
+    await connection.execute(made)
+
+
+async def spend(connection: AsyncConnection, document: str, moment: datetime) -> None:
+    """Remember of the keys of a document that goes that they are spent, and nothing else."""
+    c = idempotency_keys.c
+    values = {"digest": None, "document": None, "part": None, "deleted": moment}
+    await connection.execute(update(idempotency_keys).where(c.document == document).values(values))
+
+
+def hash_of(key: str) -> str:
+    """Hash under which a key is kept."""
+    return hashlib.sha256(key.encode()).hexdigest()

@@ -1,0 +1,150 @@
+"""Records of documents, as the store keeps them: what is handed to it, and what it gives back."""
+
+import secrets
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any, Literal
+
+
+def new_id() -> str:
+    """A new id."""
+    return secrets.token_urlsafe(16)
+
+
+DocumentKind = Literal["selection", "machine"]
+
+ANSWER = (
+    *("status", "selected", "designation", "governing_check", "utilisation", "life_L10_h", "shortest_life_h"),
+    *("shortest_life_of", "natural_frequency_Hz", "motor_torque_limit_Nm", "weight_kg", "suitable", "runner_up"),
+    *("average_torque_Nm", "not_asked", "unknown", "faults", "engine_version", "catalogue_version"),
+)
+"""Columns of an axis's answer."""
+
+LISTS = ("not_asked", "unknown", "faults")
+"""Those that are lists, as JSON."""
+
+Answer = Mapping[str, Any]
+"""Values of these columns."""
+
+
+@dataclass(frozen=True, slots=True)
+class AxisDraft:
+    """An axis to be kept: its own part and `without` as JSON, the number of its phases or moves, and its answer."""
+
+    application: bytes = field(repr=False)
+    phases: int
+    answer: Answer = field(repr=False)
+    name: str | None = None
+    quantity: int = 1
+    note: str | None = None
+    ordering_code: str | None = None
+    without: str = "[]"
+
+
+@dataclass(frozen=True, slots=True)
+class SavedAxis(AxisDraft):
+    """An axis as it is kept; `version` counts its changes from 1, `updated_by` is a key or the author as typed."""
+
+    number: int = 0
+    version: int = 1
+    updated: datetime = datetime.min
+    updated_by: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RevisionDraft:
+    """A document to be frozen under a label; `content` is what there is of it, `result` the reply to a selection."""
+
+    label: str
+    content: bytes = field(repr=False)
+    axes: int
+    engine_version: str
+    catalogue_version: str
+    author: str | None = None
+    checked: str | None = None
+    approved: str | None = None
+    note: str | None = None
+    created_by: str | None = None
+    result: bytes | None = field(default=None, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class RevisionLine:
+    """One line of the list of revisions."""
+
+    number: int
+    label: str
+    created: datetime
+    created_by: str | None
+    author: str | None
+    checked: str | None
+    approved: str | None
+    note: str | None
+    axes: int
+    engine_version: str
+    catalogue_version: str
+
+
+@dataclass(frozen=True, slots=True)
+class MachineDraft:
+    """A machine to be kept, with its axes in their order, and its first revision where it is frozen at once.
+
+    `id` is what it is kept under, `owner` the name of the API key that keeps it, None without one; `caller` stands for
+    that key or else the address, whose unsaved machines are counted.
+    """
+
+    axes: Sequence[AxisDraft] = field(repr=False)
+    engine_version: str
+    catalogue_version: str
+    title: str | None = None
+    reference: str | None = None
+    author: str | None = None
+    note: str | None = None
+    common: str = "{}"
+    owner: str | None = None
+    caller: str = ""
+    id: str = field(init=False, default_factory=new_id)
+
+    @property
+    def bytes(self) -> int:
+        """Size of the axes' own parts."""
+        return sum(len(axis.application) for axis in self.axes)
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of a list of documents; `saved` is None while nobody has saved it, `version` counts changes from 1.
+
+    `axes`, `suitable`, `unsuitable` and `open` are numbers of axes.
+    """
+
+    id: str
+    kind: DocumentKind
+    created: datetime
+    updated: datetime
+    saved: datetime | None
+    title: str | None
+    reference: str | None
+    author: str | None
+    revision: str | None
+    note: str | None
+    owner: str | None
+    version: int
+    axes: int
+    suitable: int
+    unsuitable: int
+    open: int
+    revisions: int
+    utilisation: float | None
+    engine_version: str
+    catalogue_version: str
+
+
+@dataclass(frozen=True, slots=True)
+class Machine(Line):
+    """A document with its working copy: common values as JSON, the order of its axes by number, and these or some."""
+
+    common: str
+    order: tuple[int, ...]
+    items: tuple[SavedAxis, ...] = field(repr=False)

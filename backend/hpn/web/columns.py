@@ -1,0 +1,119 @@
+"""Axes and answers as the columns of the store, and back: the store knows neither models nor the engine."""
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import msgspec
+import orjson
+from msgspec import Raw, structs
+
+from hpn.catalogue import Catalogue
+from hpn.documents import revision
+from hpn.documents.answers import Asked, AxisAnswer, answers
+from hpn.documents.axis import Axis, phases_of
+from hpn.documents.merge import Resolved, merged, resolve
+from hpn.store import AxisDraft, Machine, RevisionDraft, SavedAxis
+from hpn.store.records import LISTS
+
+Json = dict[str, Any]
+
+_encode, _answer = msgspec.json.Encoder().encode, msgspec.json.Decoder(AxisAnswer).decode
+
+
+def columns_of(answer: AxisAnswer) -> Json:
+    """Columns of an answer."""
+    return structs.asdict(answer) | {name: _encode(getattr(answer, name)).decode() for name in LISTS}
+
+
+def answer_in(columns: Mapping[str, Any]) -> AxisAnswer:
+    """Answer in its columns; a figure that an earlier version did not know is null."""
+    return _answer(_encode({**columns, **{name: Raw(columns[name].encode()) for name in LISTS}}))
+
+
+def json_of(value: Mapping[str, Any]) -> bytes:
+    """JSON of an object with whatever a caller has sent in it."""
+    return json.dumps(value, allow_nan=False, separators=(",", ":")).encode()
+
+
+def own_of(axis: SavedAxis) -> Json:
+    """An axis's own part of its application."""
+    own: Json = json.loads(axis.application)  # numbers of any length, which the models refuse
+    return own
+
+
+def without_of(axis: SavedAxis) -> tuple[str, ...]:
+    """Paths of the common values that do not hold for an axis."""
+    return tuple(orjson.loads(axis.without))
+
+
+def resolved(axis: SavedAxis, common: Mapping[str, Any]) -> Resolved:
+    """The application of an axis of a document."""
+    return resolve(own_of(axis), common, without_of(axis))
+
+
+def whole_of(axis: SavedAxis, common: Mapping[str, Any]) -> bytes:
+    """JSON of the application of an axis, by what its answer says is not asked: nothing is judged again."""
+    not_asked = orjson.loads(axis.answer["not_asked"])
+    return json_of(merged(own_of(axis), common, {*without_of(axis), *not_asked})[0])
+
+
+def common_of(machine: Machine) -> Json:
+    """Common values of a document."""
+    common: Json = orjson.loads(machine.common)
+    return common
+
+
+def drafts_of(axes: Sequence[Axis], common: Mapping[str, Any], catalogue: Catalogue) -> list[AxisDraft]:
+    """Axes to be kept, all of them answered together."""
+    asked = [Asked(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in axes]
+    return [draft_of(axis, answer) for axis, answer in zip(axes, answers(asked, catalogue), strict=True)]
+
+
+def draft_of(axis: Axis, answer: AxisAnswer) -> AxisDraft:
+    """An axis to be kept with its answer."""
+    return AxisDraft(
+        application=json_of(axis.application),
+        phases=phases_of(axis.application),
+        answer=columns_of(answer),
+        name=axis.name,
+        quantity=axis.quantity,
+        note=axis.note,
+        ordering_code=axis.ordering_code,
+        without=_encode(axis.without).decode(),
+    )
+
+
+def frozen_of(machine: Machine, axes: Sequence[SavedAxis]) -> revision.Frozen:
+    """A document as it is, with these axes."""
+    common = common_of(machine)
+    block = (machine.title, machine.reference, machine.author, machine.note)
+    return revision.Frozen(*block, common, tuple(_frozen_axis(axis, common) for axis in axes))
+
+
+def _frozen_axis(axis: SavedAxis, common: Mapping[str, Any]) -> revision.FrozenAxis:
+    return revision.FrozenAxis(
+        axis.number,
+        axis.name,
+        axis.quantity,
+        axis.note,
+        axis.ordering_code,
+        without_of(axis),
+        Raw(axis.application),
+        Raw(whole_of(axis, common)),
+        answer_in(axis.answer),
+    )
+
+
+def revision_of(machine: Machine, label: str, *, author: str | None, note: str | None) -> RevisionDraft:
+    """Revision of a document as it is, which nobody has checked yet."""
+    newest = machine.items[0].answer if machine.items else {}
+    return RevisionDraft(
+        label=label,
+        content=revision.encode(frozen_of(machine, machine.items)),
+        axes=len(machine.items),
+        engine_version=newest.get("engine_version", machine.engine_version),
+        catalogue_version=newest.get("catalogue_version", machine.catalogue_version),
+        author=author,
+        note=note,
+    )
