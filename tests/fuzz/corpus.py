@@ -101,6 +101,26 @@ FORMS = (
     LINKS[8] + b"&written=de.lb_in&do=add",
     b"T=354%2C03&n=250&t=0%2C3&written=de.lb_in&was=Nm%3A40&FR=1.234%2C5&gear=HPN-14A-5&pin=HPN-20A-5&unpin=HPN-20A-5",
 )
+MACHINES = tuple(
+    json.dumps(machine).encode()
+    for machine in (
+        {"title": "Line 4", "axes": [{"name": "hub", "quantity": 2, "application": APPLICATIONS[0]}]},
+        {
+            "reference": "4711",
+            "common": {
+                "requirements": {"utilisation": 0.9, "natural_frequency_Hz": 5, "ratios": [5, 10]},
+                "output_load": {"life_h": 20000, "model": "iso281"},
+                "rank_by": "life",
+            },
+            "axes": [
+                {"application": APPLICATIONS[2], "without": ["requirements.utilisation"], "note": "one\nline"},
+                {"ordering_code": "HPN-20A-5-J6", "application": APPLICATIONS[3]},
+                {"application": {}},
+            ],
+        },
+    )
+)
+
 TABLES_OF_PHASES = (
     *(write_table(model.duty_cycle).encode() for model in _MODELS),
     *(write_table(model.duty_cycle, ",").encode() for model in _MODELS[1:]),

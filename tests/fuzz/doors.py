@@ -165,6 +165,18 @@ async def _json(world: World, random: Random, content: bytes) -> str:
     return judged(await world.call("POST", path, headers=[JSON], body=content), api=True)
 
 
+async def _machine(world: World, random: Random, content: bytes) -> str:
+    """Save a machine, read it, and change it or its first axis by what stands in it."""
+    path = "/api/v1/machines"
+    saved = await world.call("POST", path, headers=[JSON], body=content)
+    path = f"{path}/{msgspec.json.decode(saved.body)['id'] if saved.status == 201 else 'A' * 22}"
+    for place in (path, f"{path}/gears", f"{path}/axes/1", f"{path}/axes/1/selection"):
+        judged(await world.call("GET", place), api=True)
+    body = random.choice((content, b'{"common": ' + content + b"}", b'{"application": ' + content + b"}"))
+    judged(await world.call("PATCH", path + random.choice(("", "/axes/1")), headers=[JSON], body=body), api=True)
+    return judged(saved, api=True)
+
+
 _QUESTIONS = [Application.model_validate(entry) for entry in corpus.APPLICATIONS[1:3]]
 _QUESTIONS.append(
     Application.model_validate(corpus.APPLICATIONS[0] | {"output_load": {"radial_N": 9, "model": "digitised"}})
@@ -216,5 +228,6 @@ DOORS = {
     "ndjson": Door(_lines, corpus.LINES, corpus.MARKS),
     "supplement": Door(_supplement, corpus.SUPPLEMENTS, corpus.COLUMNS),
     "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS),
+    "machine": Door(_machine, corpus.MACHINES, corpus.MARKS),
     "json": Door(_json, (*corpus.JSON, *corpus.JSON, *corpus.BATCHES, *corpus.SAVES), corpus.MARKS),
 }

@@ -13,12 +13,13 @@ from hpn.web.app import create_app
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, group_of
 from hpn.web.pages.assets import Assets
 from tests.build import phase, worked_example
-from tests.fleet.sized import fleet_draft
+from tests.fleet.sized import machine_draft
 from tests.fleet.tables import row_of
-from tests.store.test_fleets import MOST_BYTES
+from tests.store.test_machines import MOST_BYTES
 
 LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&i=5"
 QUERIES = {
+    "/api/v1/machines/{id}/differences": "from=saved&to=now",
     "/application.json": LINK,
     "/cycle.csv": LINK,
     "/report.pdf": LINK,
@@ -48,9 +49,9 @@ def saved(api: TestClient) -> str:
 @pytest.fixture(scope="module")
 def fleet(api: TestClient, service: FastAPI) -> str:
     """Id of a fleet that was sized."""
-    draft = fleet_draft([row_of("hub", worked_example())], service.state.catalogue)
+    draft = machine_draft([row_of("hub", worked_example())], service.state.catalogue)
     assert api.portal is not None
-    id: str = api.portal.call(service.state.store.keep_fleet, draft, MOST_BYTES)
+    id: str = api.portal.call(service.state.store.keep_machine, draft, MOST_BYTES)
     return id
 
 
@@ -72,6 +73,8 @@ class Address:
             "{code}": "average_torque",
             "{rest:path}": fleet,
             "{name}": "not-found",
+            "{number}": "1",
+            "{label}": "saved",
             "{name:path}": Assets.load().url("page.css").removeprefix("/static/"),
         }
 

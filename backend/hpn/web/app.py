@@ -12,16 +12,22 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
+from hpn.documents.axis import Axis
+from hpn.documents.document import Document
+from hpn.documents.revision import RevisionBlock
 from hpn.store import Store, StoreUnavailableError
 from hpn.web import archive, fleets, spool
 from hpn.web.api import (
+    axes,
     batch,
     catalogue,
     files,
     fleet,
     health,
+    machines,
     motors,
     openapi,
+    revisions,
     schemas,
     select,
     selections,
@@ -94,6 +100,9 @@ ROUTERS: tuple[APIRouter, ...] = (
     catalogue.router,
     motors.router,
     selections.router,
+    machines.router,
+    axes.router,
+    revisions.router,
     files.saved_files,
     files.posted_files,
     files.linked_files,
@@ -112,6 +121,22 @@ ROUTERS: tuple[APIRouter, ...] = (
     saving.router,
     selection_pages.router,
 )
+
+
+BODIES = (
+    Application,
+    schemas.Batch,
+    archive.SaveRequest,
+    archive.Names,
+    Document,
+    machines.MachinePatch,
+    axes.SentAxes,
+    Axis,
+    axes.AxisPatch,
+    axes.ManyAxes,
+    RevisionBlock,
+)
+"""Models of request bodies that routes read themselves."""
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -149,7 +174,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     problems.install(app, explanations.page_of)
     for router in ROUTERS:
         app.include_router(router, responses={} if router is health.router else schemas.GUARDED)
-    openapi.install(app, Application, schemas.Batch, archive.SaveRequest, archive.Names)
+    openapi.install(app, *BODIES)
     _add_middleware(app, settings)
     return app
 

@@ -25,6 +25,7 @@ TAGS = [
     {"name": "Catalogue", "description": "Published figures of the gears, each with its source."},
     {"name": "Motors", "description": "The user’s own motors, and the utilisation of each on a gear."},
     {"name": "Saved selections", "description": "Saved selections: save, list, read with differences, delete."},
+    {"name": "Machines", "description": "Machines with their axes and revisions; a selection is one with one axis."},
     {"name": "Files", "description": "Report, workbook and Asset Administration Shell of a selection."},
     {"name": "Service", "description": "State of the service."},
 ]

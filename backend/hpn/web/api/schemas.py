@@ -196,6 +196,11 @@ FROM_LIST = {
 }
 
 
+OF_A_MACHINE = ("getMachine", "changeMachine", "deleteMachine", "addAxes", "saveRevision", "listRevisions", "getGears")
+FROM_SAVED_MACHINE = _links("$response.body#/id", *OF_A_MACHINE)
+FROM_MACHINE = _links("$request.path.id", *OF_A_MACHINE[1:])
+
+
 # --- Requests ---------------------------------------------------------------------------------------------------------
 
 

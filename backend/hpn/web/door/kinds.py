@@ -121,6 +121,12 @@ KINDS: Mapping[str, Kind] = {
         N_("An Idempotency-Key belongs to one request; this one was sent before with another body."),
         N_("Send a new key with a new request, and the same body when a request is repeated."),
     ),
+    "condition-needed": Kind(
+        428,
+        N_("A condition is needed"),
+        N_("This change is about much at once, and the request does not say which state it was made for."),
+        N_("Read the machine, and send its ETag as If-Match."),
+    ),
     "too-many-requests": Kind(
         429,
         N_("Too many requests"),

@@ -1,0 +1,389 @@
+"""Axes of machines over REST: add, read, replace, change one or many, remove, bring back."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Path, Query
+from pydantic import Field, RootModel
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn import ENGINE_VERSION
+from hpn.application import InputError
+from hpn.application.faults import NO_FIELD, Fault
+from hpn.catalogue import Catalogue
+from hpn.documents.answers import Asked, answers
+from hpn.documents.axis import MOST_AXES, MOST_BYTES, READ_ONLY, Axis
+from hpn.documents.gears import Placed, gears_of
+from hpn.documents.merge import resolve
+from hpn.engine.selection import Selection, select
+from hpn.engine.selection import encode as encode_selection
+from hpn.store import AxisDraft, Change, Machine, MachineDraft, Once, SavedAxis
+from hpn.web.api import machine_replies as replies
+from hpn.web.api import schemas
+from hpn.web.api.machines import ADDRESS, require_machine
+from hpn.web.api.replies import JSONBytes, encode
+from hpn.web.columns import columns_of, common_of, draft_of, drafts_of, own_of, resolved, without_of
+from hpn.web.door.access import admit
+from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
+from hpn.web.door.conditions import require_match
+from hpn.web.door.observation import note
+from hpn.web.door.pools import compute
+from hpn.web.door.problems import Problem
+from hpn.web.form.link_writer import to_link
+from hpn.web.machines import (
+    apply,
+    author_of,
+    axis_of,
+    axis_tag,
+    editable,
+    found,
+    guarded,
+    no_axis,
+    once_of,
+    patched,
+    require_document,
+    tag_of,
+)
+from hpn.words.fields import Model
+
+Number = Annotated[int, Path(ge=1, le=2**31 - 1, description="Number of the axis.")]
+
+router = APIRouter(prefix=f"{ADDRESS}/{{id}}/axes", tags=["Machines"])
+
+
+class SentAxes(Model):
+    """Several axes."""
+
+    axes: tuple[Axis, ...] = Field(min_length=1, max_length=MOST_AXES, description="Axes to add, in their order.")
+
+
+class AxisPatch(RootModel[dict[str, Any]]):
+    """Merge patch of an axis."""
+
+
+class ManyAxes(Model):
+    """A change of several axes at once."""
+
+    numbers: Annotated[tuple[int, ...], Field(max_length=MOST_AXES)] | Literal["all"] = Field(
+        description="Numbers of the axes, or all.", examples=[[1, 2]]
+    )
+    patch: dict[str, Any] = Field(
+        description="Merge patch of each axis.", examples=[{"application": {"requirements": {"utilisation": 0.9}}}]
+    )
+
+
+def _tagged(machine: Machine, axis: SavedAxis) -> Response:
+    """An axis as it is, with the tag of its own values."""
+    body = encode(replies.axis(axis, common_of(machine)))
+    return JSONBytes(body, headers={"ETag": axis_tag(machine, axis), "Cache-Control": "no-cache"})
+
+
+TAGGED = schemas.headers("ETag")
+IF_MATCH = {"parameters": [schemas.header("If-Match", "Tag of the axis to change.")]}
+REFUSED = (400, 403, 404, 408, 412, 413, 415, 422)
+
+
+@router.post(
+    "",
+    dependencies=[admit("deleting")],
+    operation_id="addAxes",
+    summary="Add axes",
+    status_code=201,
+    openapi_extra=schemas.request_body(SentAxes)
+    | {
+        "parameters": [
+            schemas.header("Idempotency-Key", "Makes a retry safe."),
+            schemas.header("If-Match", "Tag of the machine."),
+        ]
+    },
+    response_model=replies.NumbersReply,
+    responses=schemas.answers(*(*REFUSED, 410), status=201, headers=schemas.headers("Location", "ETag")),
+)
+async def add_axes(request: Request, id: schemas.Id) -> Response:
+    """Adds axes behind the others under new numbers; the number of a removed axis brings that back as it was.
+
+    A selection keeps its one axis: a new machine, whose address is in `Location`, begins with it.
+    """
+    body = await read_body(request, maximum_bytes=MOST_BYTES)
+    sent = await compute(request, "pages", parsed, SentAxes, body, require_machine)
+    if (selection := await found(request, id, kind=None)).kind == "selection":
+        return await _machine_of(request, selection, sent, once_of(request, body))
+    back = [axis.number for axis in sent.axes if axis.number is not None]
+    if len(set(back)) < len(back):
+        raise Problem(422, "axes must name each number once", [(("axes",), "must name each number once")])
+    gone = [await _removed(request, id, number) for number in back]
+    catalogue: Catalogue = request.app.state.catalogue
+
+    def make(machine: Machine) -> Change:
+        require_document(request, machine)
+        common = common_of(machine)
+        new = [axis for axis in sent.axes if axis.number is None]
+        asked = [Asked(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in new]
+        asked += [Asked(resolved(axis, common), axis.ordering_code) for axis in gone]
+        found = answers(asked, catalogue)
+        drafts = [draft_of(axis, answer) for axis, answer in zip(new, found[: len(new)], strict=True)]
+        restored = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, found[len(new) :], strict=True)]
+        return Change(machine.version, author_of(request, machine), new=drafts, restored=restored)
+
+    numbers = await apply(request, id, make, [], once_of(request, body))
+    tag = tag_of(await editable(request, id, []))
+    return JSONBytes(encode(replies.NumbersReply(tuple(numbers))), 201, {"ETag": tag})
+
+
+async def _machine_of(request: Request, selection: Machine, sent: SentAxes, once: Once | None) -> Response:
+    """A new machine that begins with a selection."""
+    draft = await compute(
+        request, "batches", _begun, selection, sent, request.app.state.catalogue, request.state.api_key
+    )
+    id: str = await guarded(request.app.state.store.add_machine(draft, once))
+    note(request, machine=id)
+    headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await found(request, id, []))}
+    numbers = tuple(range(2, 2 + len(sent.axes)))
+    return JSONBytes(encode(replies.NumbersReply(numbers)), 201, headers)
+
+
+def _begun(selection: Machine, sent: SentAxes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
+    same = AxisDraft.__dataclass_fields__
+    first = [AxisDraft(**{name: getattr(axis, name) for name in same}) for axis in selection.items]
+    return MachineDraft(
+        axes=[*first, *drafts_of(sent.axes, common_of(selection), catalogue)],
+        engine_version=ENGINE_VERSION,
+        catalogue_version=catalogue.version,
+        title=selection.title,
+        reference=selection.reference,
+        author=selection.author,
+        note=selection.note,
+        common=selection.common,
+        owner=owner,
+    )
+
+
+async def _removed(request: Request, id: str, number: int) -> SavedAxis:
+    await editable(request, id, [])
+    axis: SavedAxis | None = await request.app.state.store.removed_axis(id, number)
+    if axis is None:
+        detail = f"names {number}, which is no removed axis of this machine"
+        raise Problem(422, f"axes {detail}", [(("axes",), detail)])
+    return axis
+
+
+@router.get(
+    "/{number}",
+    dependencies=[admit("reading")],
+    operation_id="getAxis",
+    summary="Read an axis",
+    response_model=replies.AxisReply,
+    responses=schemas.answers(403, 404, 422, headers=TAGGED),
+)
+async def read_axis(request: Request, id: schemas.Id, number: Number) -> Response:
+    """An axis with its own part, what it resolves to, and its answer. Its ETag stands for its own values."""
+    return _tagged(*await axis_of(request, id, number))
+
+
+@router.get(
+    "/{number}/selection",
+    dependencies=[admit("reading")],
+    operation_id="getAxisSelection",
+    summary="Selection of an axis",
+    response_model=Selection,
+    responses=schemas.answers(403, 404, 409, 422),
+)
+async def read_selection(request: Request, id: schemas.Id, number: Number) -> Response:
+    """The answer of POST /api/v1/select to the axis; 409 for an axis that is open."""
+    machine, axis = await axis_of(request, id, number)
+    body = await compute(request, "pages", _selection, machine, axis, request.app.state.catalogue)
+    return JSONBytes(body, headers={"Cache-Control": "no-cache"})
+
+
+def _selection(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes:
+    found = resolved(axis, common_of(machine))
+    if found.application is None:
+        faults = [Fault(location, sentence.text, code) for location, sentence, code in found.faults]
+        raise Problem(409, "the axis is open: its application is incomplete, or has errors", faults)
+    try:
+        return encode_selection(select(found.application, catalogue, to_link(found.application)))
+    except InputError as error:
+        raise Problem(409, str(error), Problem.of(error).errors) from None
+
+
+@router.put(
+    "/{number}",
+    dependencies=[admit("deleting")],
+    operation_id="putAxis",
+    summary="Replace an axis",
+    openapi_extra=schemas.request_body(Axis) | IF_MATCH,
+    response_model=replies.AxisReply,
+    responses=schemas.answers(*REFUSED, headers=TAGGED),
+)
+async def put_axis(request: Request, id: schemas.Id, number: Number) -> Response:
+    """Replaces an axis by what is sent; `number`, `resolved` and what follows it are ignored."""
+    body = await read_body(request)
+    sent = await compute(request, "pages", parsed, Axis, body)
+    whole = {name: getattr(sent, name) for name in FIELDS}
+    return await _changed(request, id, number, lambda axis: whole)
+
+
+@router.patch(
+    "/{number}",
+    dependencies=[admit("deleting")],
+    operation_id="changeAxis",
+    summary="Change an axis",
+    openapi_extra=schemas.request_body(AxisPatch, JSON, MERGE_PATCH) | IF_MATCH,
+    response_model=replies.AxisReply,
+    responses=schemas.answers(*REFUSED, headers=TAGGED),
+)
+async def change_axis(request: Request, id: schemas.Id, number: Number) -> Response:
+    """Merge patch (RFC 7396) of an axis, its own part of the application included."""
+    body = await read_body(request, JSON, MERGE_PATCH)
+    patch = await compute(request, "pages", _patch_in, body)
+    return await _changed(request, id, number, lambda axis: after(axis, patch))
+
+
+def _patch_in(body: bytes) -> dict[str, Any]:
+    """A merge patch of an axis, whose names are those of its fields."""
+    patch = parsed(AxisPatch, body).root
+    _require_fields(patch)
+    return patch
+
+
+async def _changed(request: Request, id: str, number: int, values: Any) -> Response:
+    """An axis after a change of its own values."""
+    catalogue: Catalogue = request.app.state.catalogue
+
+    def make(machine: Machine) -> Change:
+        if not machine.items:
+            raise no_axis(number)
+        (axis,) = machine.items
+        require_match(request, axis_tag(machine, axis))
+        draft = drafted([(axis, values(axis))], common_of(machine), catalogue)[0]
+        by = author_of(request, machine)
+        return Change(machine.version, by, changed=[(number, axis.version, draft)])
+
+    await apply(request, id, make, [number])
+    return _tagged(*await axis_of(request, id, number))
+
+
+@router.delete(
+    "/{number}",
+    dependencies=[admit("deleting")],
+    operation_id="removeAxis",
+    summary="Remove an axis",
+    status_code=204,
+    openapi_extra=IF_MATCH,
+    responses=schemas.DELETED | schemas.problems(403, 404, 409, 412, 422),
+)
+async def remove_axis(request: Request, id: schemas.Id, number: Number) -> Response:
+    """Removes an axis. Its number is never used again; POST with it brings the axis back."""
+
+    def make(machine: Machine) -> Change:
+        if not machine.items:
+            raise no_axis(number)
+        if machine.kind == "selection":
+            raise Problem(409, "a selection keeps its one axis; delete the selection")
+        (axis,) = machine.items
+        require_match(request, axis_tag(machine, axis))
+        return Change(machine.version, author_of(request, machine), removed=[(number, axis.version)])
+
+    await apply(request, id, make, [number])
+    return Response(status_code=204)
+
+
+@router.patch(
+    "",
+    dependencies=[admit("deleting")],
+    operation_id="changeAxes",
+    summary="Change several axes",
+    openapi_extra=schemas.request_body(ManyAxes)
+    | {"parameters": [schemas.header("If-Match", "Tag of the machine; needed, but for a dry run.")]},
+    response_model=replies.EffectReply,
+    responses=schemas.answers(*REFUSED, 428, headers=TAGGED),
+)
+async def change_axes(
+    request: Request,
+    id: schemas.Id,
+    dry: Annotated[bool, Query(description="1: the effect alone; nothing is saved.")] = False,
+) -> Response:
+    """Changes many axes at once by one merge patch, and says the effect; with `dry=1` the effect alone."""
+    body = await read_body(request, JSON, maximum_bytes=MOST_BYTES)
+    sent = await compute(request, "pages", parsed, ManyAxes, body, require_machine)
+    _require_fields(sent.patch, "patch")
+    if not dry and "if-match" not in request.headers:
+        raise Problem(428, "send the machine’s ETag as If-Match")
+    catalogue: Catalogue = request.app.state.catalogue
+    effects: list[replies.EffectReply] = []
+
+    def make(machine: Machine) -> Change:
+        require_document(request, machine)
+        axes = _named(machine, sent.numbers)
+        drafts = drafted([(axis, after(axis, sent.patch)) for axis in axes], common_of(machine), catalogue)
+        changed = [(axis.number, axis.version, draft) for axis, draft in zip(axes, drafts, strict=True)]
+        effects.append(effect_of(machine, {number: draft for number, _, draft in changed}, catalogue))
+        return Change(machine.version, author_of(request, machine), changed=changed)
+
+    if dry:
+        await compute(request, "batches", make, await editable(request, id))
+    else:
+        await apply(request, id, make)
+    tag = tag_of(await editable(request, id, []))
+    return JSONBytes(encode(effects[-1]), headers={"ETag": tag})
+
+
+def _require_fields(patch: Mapping[str, Any], *place: str) -> None:
+    """Raise Problem 422 for a patch of something that no axis has; what is given alone is ignored."""
+    for name in patch:
+        if name not in {*FIELDS, *READ_ONLY, "number"}:
+            raise Problem(422, f"{name!r:.80} is not a field of an axis", [((*place, name), NO_FIELD)])
+
+
+def _named(machine: Machine, numbers: tuple[int, ...] | Literal["all"]) -> list[SavedAxis]:
+    by_number = {axis.number: axis for axis in machine.items}
+    wanted = list(by_number) if numbers == "all" else list(dict.fromkeys(numbers))
+    if missing := [number for number in wanted if number not in by_number]:
+        detail = f"names {missing[0]}, which is no axis of this machine"
+        raise Problem(422, f"numbers {detail}", [(("numbers",), detail)])
+    return [by_number[number] for number in wanted]
+
+
+# --- Own values -------------------------------------------------------------------------------------------------------
+
+FIELDS = ("name", "quantity", "note", "ordering_code", "without", "application")
+"""Own values of an axis."""
+
+
+def own_values(axis: SavedAxis) -> dict[str, Any]:
+    """Own values of an axis as they are."""
+    same = {name: getattr(axis, name) for name in ("name", "quantity", "note", "ordering_code")}
+    return same | {"without": without_of(axis), "application": own_of(axis)}
+
+
+def after(axis: SavedAxis, patch: Mapping[str, Any]) -> dict[str, Any]:
+    """Own values of an axis after a merge patch; ValidationError where one that it changes is wrong."""
+    now = own_values(axis)
+    changed = {name: patched(now[name], value) for name, value in patch.items() if name in FIELDS}
+    checked = Axis.model_validate({name: value for name, value in changed.items() if value is not None})
+    return now | {name: getattr(checked, name) for name in changed}
+
+
+def drafted(
+    axes: list[tuple[SavedAxis, dict[str, Any]]], common: Mapping[str, Any], catalogue: Catalogue
+) -> list[AxisDraft]:
+    """Axes with other own values, all answered together."""
+    asked = [Asked(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
+    found = answers(asked, catalogue)
+    return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, found, strict=True)]
+
+
+def effect_of(machine: Machine, drafts: Mapping[int, AxisDraft], catalogue: Catalogue) -> replies.EffectReply:
+    """Effect of a change on the gears of a machine."""
+    now = {axis.number: axis for axis in machine.items}
+    other = [n for n, draft in drafts.items() if draft.answer["designation"] != now[n].answer["designation"]]
+    without = [n for n, draft in drafts.items() if draft.answer["selected"] is None and draft.ordering_code is None]
+    before = gears_of(map(_placed, now.items()), catalogue).weight_kg
+    then = gears_of(map(_placed, {**now, **drafts}.items()), catalogue).weight_kg
+    return replies.EffectReply(len(drafts), tuple(other), tuple(without), before, then)
+
+
+def _placed(item: tuple[int, AxisDraft]) -> Placed:
+    number, axis = item
+    return Placed(number, axis.quantity, axis.ordering_code, axis.answer["selected"])

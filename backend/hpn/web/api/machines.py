@@ -1,0 +1,279 @@
+"""Machines over REST: create, list, read, change, delete."""
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Annotated, Any, Literal
+from urllib.parse import urlencode
+
+import msgspec
+from fastapi import APIRouter, Query
+from pydantic import Field
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
+from hpn.documents.axis import MOST_AXES, MOST_BYTES, MOST_PHASES
+from hpn.documents.common import Common
+from hpn.documents.document import Document, TitleBlock
+from hpn.store import Change, Machine, MachineDraft, Store, WantedLines
+from hpn.web.api import machine_replies as replies
+from hpn.web.api import schemas
+from hpn.web.api.replies import JSONBytes, SavedReply, encode
+from hpn.web.archive import Line
+from hpn.web.columns import common_of, drafts_of
+from hpn.web.door.access import admit
+from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
+from hpn.web.door.conditions import other_state
+from hpn.web.door.observation import note
+from hpn.web.door.pools import compute
+from hpn.web.door.problems import Problem
+from hpn.web.machines import (
+    answered,
+    apply,
+    editable,
+    found,
+    guarded,
+    once_of,
+    patched,
+    require_document,
+    tag_of,
+)
+
+REPLAYED = "Idempotency-Replayed"
+ADDRESS = "/api/v1/machines"
+TEXTS = 12
+"""Names and lists of the JSON of a machine beyond those of its phases: what `GET` gives has each value three times."""
+
+KINDS = {"machine": "machine", "selection": "selection", "all": None}
+
+router = APIRouter(prefix=ADDRESS, tags=["Machines"])
+
+
+def require_machine(text: bytes) -> None:
+    """Raise Problem 422 for JSON with more in it than any machine has, before it is parsed."""
+    objects, names = 3 * MOST_PHASES + TEXTS * MOST_AXES, 30 * MOST_PHASES + 10 * TEXTS * MOST_AXES
+    if text.count(b"{") > objects or text.count(b":") > names or text.count(b"[") > objects:
+        detail = f"has more in it than a machine with {MOST_AXES} axes and {MOST_PHASES} phases"
+        raise Problem(422, detail, [((), detail)])
+
+
+class MachinePatch(TitleBlock):
+    """Changes of a machine: a merge patch of title block and common values, and another order of its axes."""
+
+    common: dict[str, Any] | None = Field(None, description="Merge patch of the common values; null removes one.")
+    order: Annotated[tuple[int, ...], Field(max_length=MOST_AXES)] | None = Field(
+        None, description="Numbers of all its axes in another order."
+    )
+
+
+@router.post(
+    "",
+    dependencies=[admit("writing")],
+    operation_id="saveMachine",
+    summary="Save a machine",
+    status_code=201,
+    openapi_extra=schemas.request_body(Document)
+    | {"parameters": [schemas.header("Idempotency-Key", "Makes a retry safe: see POST /api/v1/selections.")]},
+    response_model=SavedReply,
+    responses=schemas.answers(
+        *(400, 408, 410, 413, 415, 422),
+        status=201,
+        headers=schemas.headers("Location", "ETag", REPLAYED),
+        links=schemas.FROM_SAVED_MACHINE,
+    ),
+)
+async def save_machine(request: Request) -> Response:
+    """Saves a machine with its axes, each with its answer; once answered with 201 it is durable."""
+    once = once_of(request, body := await read_body(request, maximum_bytes=MOST_BYTES))
+    draft = await compute(request, "batches", _draft, body, request.app.state.catalogue, request.state.api_key)
+    id: str = await guarded(request.app.state.store.add_machine(draft, once))
+    note(request, machine=id)
+    headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await found(request, id, []))}
+    if id != draft.id:
+        headers[REPLAYED] = "true"
+    return JSONBytes(encode(SavedReply(id, f"/machines/{id}")), 201, headers)
+
+
+def _draft(body: bytes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
+    sent = parsed(Document, body, require_machine)
+    common = sent.common.sent
+    return MachineDraft(
+        axes=drafts_of(sent.axes, common, catalogue),
+        engine_version=ENGINE_VERSION,
+        catalogue_version=catalogue.version,
+        title=sent.title,
+        reference=sent.reference,
+        author=sent.author,
+        note=sent.note,
+        common=msgspec.json.encode(common).decode(),
+        owner=owner,
+    )
+
+
+def _moment(time: datetime | None, name: str) -> datetime | None:
+    """A moment of the query, in UTC where it says no zone; Problem 422 for one before the first year."""
+    if time is None:
+        return None
+    try:
+        return (time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(UTC)
+    except OverflowError:
+        detail = "must be a moment such as 2026-11-26T08:30:00Z"
+        raise Problem(422, f"{name} {detail}", [((name,), detail)]) from None
+
+
+Since = Annotated[datetime | None, Query(description="Only those of this moment or later.")]
+
+
+@router.get(
+    "",
+    dependencies=[admit("listing")],
+    operation_id="listMachines",
+    summary="List machines",
+    response_model=replies.MachineListReply,
+    responses=schemas.answers(422, headers=schemas.headers("Link")),
+)
+async def list_machines(
+    request: Request,
+    search: Annotated[Line | None, Query(description="Only those with each of these words.")] = None,
+    reference: Annotated[Line | None, Query(description="Only those with this reference.")] = None,
+    author: Annotated[Line | None, Query(description="Only those of this author.")] = None,
+    selected: Annotated[Line | None, Query(description="Only those with an axis with this gear.")] = None,
+    updated_since: Since = None,
+    created_since: Since = None,
+    deleted_since: Since = None,
+    kind: Annotated[
+        Literal["machine", "selection", "all"], Query(description="Machines, selections or both.")
+    ] = "machine",
+    cursor: Annotated[str | None, Query(max_length=200, description="Cursor from the page before.")] = None,
+    limit: Annotated[int, Query(ge=1, le=replies.MACHINES_LISTED, description="Largest number on a page.")] = 50,
+) -> Response:
+    """Saved machines, newest first; the Link header gives the next page. `deleted` has the ids that are gone."""
+    of_kind: Any = KINDS[kind]
+    since, created = _moment(updated_since, "updated_since"), _moment(created_since, "created_since")
+    wanted = WantedLines(of_kind, search, reference, author, selected, since, created)
+    store: Store = request.app.state.store
+    try:
+        lines, following = await store.machines(cursor, limit, wanted)
+    except ValueError as error:
+        raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
+    deleted = _moment(deleted_since, "deleted_since")
+    gone = [] if deleted is None else [id for id, _ in await store.deleted(deleted, of_kind)]
+    listed = replies.MachineListReply([replies.line(each) for each in lines], following, gone)
+    response = JSONBytes(encode(listed), headers={"Cache-Control": "no-cache"})
+    if following:
+        pairs = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
+        response.headers["Link"] = f'<{ADDRESS}?{urlencode([*pairs, ("cursor", following)])}>; rel="next"'
+    return response
+
+
+@router.get(
+    "/{id}",
+    dependencies=[admit("reading")],
+    operation_id="getMachine",
+    summary="Read a machine",
+    response_model=replies.MachineReply,
+    responses=schemas.answers(403, 404, 422, headers=schemas.headers("ETag"), links=schemas.FROM_MACHINE),
+)
+async def read_machine(
+    request: Request,
+    id: schemas.Id,
+    fields: Annotated[
+        str | None,
+        Query(max_length=1000, description="Names of the fields wanted, with commas; those of an axis as `axes.name`."),
+    ] = None,
+) -> Response:
+    """The machine with its working copy. Its ETag stands for title block, common values, order and set of axes."""
+    machine = await found(request, id)
+    body = await compute(request, "pages", _whole, machine, fields)
+    return JSONBytes(body, headers={"ETag": tag_of(machine), "Cache-Control": "no-cache"})
+
+
+def _whole(machine: Machine, fields: str | None) -> bytes:
+    """JSON of a machine, or of some fields; Problem 422 for a name that it hasn't."""
+    if fields is None:
+        return encode(replies.machine(machine))
+    names = {name.strip() for name in fields.split(",")}
+    of_axes = {name.removeprefix("axes.") for name in names if name.startswith("axes.")}
+    unknown = {name for name in names if not name.startswith("axes.")} - set(replies.MachineReply.__struct_fields__)
+    if unknown := unknown | (of_axes - replies.PARTS.keys()):
+        detail = f"names {min(unknown)!r:.80}, which is no field of a machine"
+        raise Problem(422, f"fields {detail}", [(("fields",), detail)])
+    return encode(replies.parts(machine, names, replies.PARTS if "axes" in names else of_axes))
+
+
+@router.patch(
+    "/{id}",
+    dependencies=[admit("deleting")],
+    operation_id="changeMachine",
+    summary="Change title block, common values or order",
+    openapi_extra=schemas.request_body(MachinePatch, JSON, MERGE_PATCH)
+    | {"parameters": [schemas.header("If-Match", "Tag of the version to change.")]},
+    response_model=replies.MachineReply,
+    responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422), headers=schemas.headers("ETag")),
+)
+async def change_machine(request: Request, id: schemas.Id) -> Response:
+    """Merge patch (RFC 7396) of title block and common values; `order` has the numbers of all axes.
+
+    Every axis is answered anew where common values change; one that can't be answered any more is open, and never
+    keeps the change from being made.
+    """
+    body = await read_body(request, JSON, MERGE_PATCH, maximum_bytes=MOST_BYTES)
+    patch = await compute(request, "pages", parsed, MachinePatch, body, require_machine)
+    catalogue: Catalogue = request.app.state.catalogue
+    by = request.state.api_key
+
+    def make(machine: Machine) -> Change:
+        require_document(request, machine)
+        return _change(machine, patch, catalogue, by)
+
+    needs_axes = "common" in patch.model_fields_set
+    await apply(request, id, make, None if needs_axes else [])
+    return await read_machine(request, id)
+
+
+def _change(machine: Machine, patch: MachinePatch, catalogue: Catalogue, by: str | None) -> Change:
+    sent = patch.model_fields_set
+    values: dict[str, Any] = {n: getattr(patch, n) for n in ("title", "reference", "author", "note") if n in sent}
+    made = Change(machine.version, by, values, _order(machine, patch.order) if patch.order is not None else None)
+    if "common" not in sent:
+        return made
+    try:
+        common = Common.model_validate(patched(common_of(machine), patch.common) or {}).sent
+    except ValueError as error:
+        raise _below_common(error) from None
+    values["common"] = msgspec.json.encode(common).decode()
+    return replace(made, answered=answered(machine, common, catalogue))
+
+
+def _below_common(error: ValueError) -> Problem:
+    problem = Problem.of(error)  # type: ignore[arg-type]
+    problem.errors = [fault._replace(location=("common", *fault.location)) for fault in problem.errors]
+    return problem
+
+
+def _order(machine: Machine, order: tuple[int, ...]) -> list[int]:
+    if sorted(order) != sorted(machine.order):
+        detail = "must name each axis of the machine once"
+        raise Problem(422, f"order {detail}", [(("order",), detail)])
+    return list(order)
+
+
+@router.delete(
+    "/{id}",
+    dependencies=[admit("deleting")],
+    operation_id="deleteMachine",
+    summary="Delete a machine",
+    status_code=204,
+    responses=schemas.DELETED | schemas.problems(403, 404, 412, 422),
+    openapi_extra={"parameters": [schemas.header("If-Match", "Tag of the version to delete.")]},
+)
+async def delete_machine(request: Request, id: schemas.Id) -> Response:
+    """Deletes a machine with its revisions permanently. A retry of saving it is then answered with 410."""
+    machine = await editable(request, id, [])
+    require_document(request, machine)
+    named = request.headers.get("if-match", "*").strip() != "*"
+    if not await request.app.state.store.delete(id, machine.version if named else None, None):
+        raise other_state()
+    note(request, machine=id)
+    return Response(status_code=204)

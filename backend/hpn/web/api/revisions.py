@@ -1,0 +1,215 @@
+"""Revisions of documents over REST, and what is read out of the working copy: gears to order and fewest kinds."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.catalogue import Catalogue
+from hpn.documents.axis import MOST_AXES
+from hpn.documents.differences import DocumentDifferences, differences, today
+from hpn.documents.gears import GearOrder, Placed, gears_of
+from hpn.documents.kinds import MachineKinds, Sought, kinds_of
+from hpn.documents.revision import NOW, TODAY, Frozen, RevisionBlock, decode, label_key
+from hpn.store import LabelTakenError, Machine, RevisionDraft, RevisionLine
+from hpn.web.api import machine_replies as replies
+from hpn.web.api import schemas
+from hpn.web.api.machines import ADDRESS
+from hpn.web.api.replies import JSONBytes, encode
+from hpn.web.columns import common_of, frozen_of, resolved, revision_of
+from hpn.web.door.access import admit
+from hpn.web.door.bodies import parsed, read_body
+from hpn.web.door.conditions import etag_of
+from hpn.web.door.observation import note
+from hpn.web.door.pools import compute
+from hpn.web.door.problems import Problem
+from hpn.web.machines import LIMITS, RETRY_SECONDS, TRIES, editable, found, guarded, of_today, once_of, require_document
+from hpn.words.wording import N_, Sentence
+
+Label = Annotated[str, Path(max_length=20, description="Label of the revision, in any case.")]
+SAVE_FIRST = N_("nobody has saved this machine yet: save it first, then freeze a revision")
+TAKEN = N_("there is a revision {label} already: choose another label")
+
+router = APIRouter(prefix=f"{ADDRESS}/{{id}}", tags=["Machines"])
+
+
+@router.post(
+    "/revisions",
+    dependencies=[admit("deleting")],
+    operation_id="saveRevision",
+    summary="Freeze a revision",
+    status_code=201,
+    openapi_extra=schemas.request_body(RevisionBlock)
+    | {
+        "parameters": [
+            schemas.header("Idempotency-Key", "Makes a retry safe."),
+            schemas.header("If-Match", "Tag of the machine."),
+        ]
+    },
+    response_model=replies.RevisionReply,
+    responses=schemas.answers(
+        *(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=schemas.headers("Location", "ETag")
+    ),
+)
+async def save_revision(request: Request, id: schemas.Id) -> Response:
+    """Freezes the working copy under a label: own, inherited and resolved values and answers. It never changes."""
+    once = once_of(request, body := await read_body(request))
+    block = parsed(RevisionBlock, body)
+    for _ in range(TRIES):
+        machine = await editable(request, id)
+        require_document(request, machine)
+        if machine.saved is None:
+            raise Problem(409, Sentence(SAVE_FIRST))
+        draft = await compute(request, "batches", _frozen, machine, block, request.app.state.catalogue)
+        draft = replace(draft, created_by=request.state.api_key)
+        try:
+            label = await guarded(request.app.state.store.freeze(id, machine.version, draft, LIMITS, once))
+        except LabelTakenError:
+            raise Problem(409, Sentence(TAKEN, {"label": block.label})) from None
+        if label is not None:
+            note(request, machine=id)
+            line, content = await _revision(request, id, label)
+            headers = {"Location": f"{ADDRESS}/{id}/revisions/{label}", "ETag": etag_of(content)}
+            return JSONBytes(encode(replies.revision(line)), 201, headers)
+    raise Problem.later("others are changing this machine at the moment; try again", RETRY_SECONDS)
+
+
+def _frozen(machine: Machine, block: RevisionBlock, catalogue: Catalogue) -> RevisionDraft:
+    draft = revision_of(of_today(machine, catalogue), block.label, author=block.author, note=block.note)
+    return replace(draft, checked=block.checked, approved=block.approved)
+
+
+async def _revision(request: Request, id: str, label: str) -> tuple[RevisionLine, bytes]:
+    kept: tuple[RevisionLine, bytes] | None = await request.app.state.store.revision(id, label)
+    if kept is None:
+        raise Problem(404, f"there is no revision {label[:20]!r}")
+    return kept
+
+
+@router.get(
+    "/revisions",
+    dependencies=[admit("reading")],
+    operation_id="listRevisions",
+    summary="List revisions",
+    response_model=replies.RevisionsReply,
+    responses=schemas.answers(403, 404, 422),
+)
+async def list_revisions(request: Request, id: schemas.Id) -> Response:
+    """Revisions of a document, the latest first."""
+    await found(request, id, [])
+    lines = await request.app.state.store.revisions(id)
+    body = encode(replies.RevisionsReply([replies.revision(each) for each in lines]))
+    return JSONBytes(body, headers={"Cache-Control": "no-cache"})
+
+
+@router.get(
+    "/revisions/{label}",
+    dependencies=[admit("reading")],
+    operation_id="getRevision",
+    summary="Read a revision",
+    response_model=replies.FrozenReply,
+    responses=schemas.answers(403, 404, 422, headers=schemas.headers("ETag")),
+)
+async def read_revision(request: Request, id: schemas.Id, label: Label) -> Response:
+    """A document as it was frozen, its answers of then."""
+    await found(request, id, [])
+    line, content = await _revision(request, id, label)
+    body = await compute(request, "pages", lambda: encode(replies.frozen(line, decode(content))))
+    return JSONBytes(body, headers={"ETag": etag_of(content), "Cache-Control": "no-cache"})
+
+
+@router.get(
+    "/differences",
+    dependencies=[admit("reading")],
+    operation_id="getDifferences",
+    summary="Differences between two states",
+    response_model=DocumentDifferences,
+    responses=schemas.answers(403, 404, 422),
+)
+async def read_differences(
+    request: Request,
+    id: schemas.Id,
+    before: Annotated[str, Query(alias="from", max_length=20, description="Label of a revision, now or today.")],
+    after: Annotated[str, Query(alias="to", max_length=20, description="Label of a revision, now or today.")],
+) -> Response:
+    """What differs between two revisions, a revision and the working copy (`now`), or a state and what today's
+    catalogue and engine say to it (`today`); by axis, those with another verdict first.
+    """
+    if label_key(before) == label_key(after) == TODAY:
+        detail = "today is compared with a revision, or with now"
+        raise Problem(422, detail, [(("to",), detail)])
+    machine = await found(request, id)
+    states = [await _state(request, machine, label) for label in (before, after)]
+    body = await compute(request, "batches", _compared, states, request.app.state.catalogue)
+    return JSONBytes(body, headers={"Cache-Control": "no-cache"})
+
+
+async def _state(request: Request, machine: Machine, label: str) -> bytes | Machine | None:
+    """A revision as it was frozen, or the working copy; None for today."""
+    if label_key(label) in (NOW, TODAY):
+        return machine if label_key(label) == NOW else None
+    return (await _revision(request, machine.id, label))[1]
+
+
+def _compared(states: Sequence[bytes | Machine | None], catalogue: Catalogue) -> bytes:
+    known = [_frozen_state(each) for each in states]
+    there = next(each for each in known if each is not None)
+    one, other = (today(there, catalogue) if each is None else each for each in known)
+    return encode(differences(one, other))
+
+
+def _frozen_state(state: bytes | Machine | None) -> Frozen | None:
+    if isinstance(state, Machine):
+        return frozen_of(state, state.items)
+    return None if state is None else decode(state)
+
+
+@router.get(
+    "/gears",
+    dependencies=[admit("reading")],
+    operation_id="getGears",
+    summary="Gears to order",
+    response_model=GearOrder,
+    responses=schemas.answers(403, 404, 422),
+)
+async def read_gears(request: Request, id: schemas.Id) -> Response:
+    """Gears of all axes by their ordering codes, with quantities and masses."""
+    machine = await found(request, id)
+    axes = (Placed(axis.number, axis.quantity, axis.ordering_code, axis.answer["selected"]) for axis in machine.items)
+    body = encode(gears_of(axes, request.app.state.catalogue))
+    return JSONBytes(body, headers={"Cache-Control": "no-cache"})
+
+
+@router.get(
+    "/kinds",
+    dependencies=[admit("reading")],
+    operation_id="getKinds",
+    summary="Fewest kinds of gears",
+    response_model=MachineKinds,
+    responses=schemas.answers(403, 404, 422),
+)
+async def read_kinds(
+    request: Request,
+    id: schemas.Id,
+    most: Annotated[
+        int | None, Query(ge=1, le=MOST_AXES, description="Largest number of kinds that is asked for.")
+    ] = None,
+) -> Response:
+    """Sets of least weight for each number of kinds, from the machine's own down to the least."""
+    machine = await found(request, id)
+    body = await compute(request, "batches", _kinds, machine, request.app.state.catalogue, most)
+    return JSONBytes(body, headers={"Cache-Control": "no-cache"})
+
+
+def _kinds(machine: Machine, catalogue: Catalogue, most: int | None) -> bytes:
+    common = common_of(machine)
+    pairs = ((axis, resolved(axis, common).application) for axis in machine.items)
+    sought = [
+        Sought(axis.number, axis.quantity, application, axis.answer["designation"])
+        for axis, application in pairs
+        if application is not None and axis.answer["status"] != "open"
+    ]
+    return encode(kinds_of(sought, catalogue, most=most))

@@ -1,0 +1,512 @@
+"""Machines over REST, with the store on each kind of database: a test for each sentence of the contract."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from threading import Barrier
+from typing import Any
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.documents.merge import resolve
+from hpn.engine.selection import select
+from hpn.store import Limits
+from hpn.web import machines as web_machines
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
+from tests.build import Json, cycle, phase, worked_example
+from tests.store.drafts import WEAKER
+
+ADDRESS = "/api/v1/machines"
+COMMON: Json = {"requirements": {"utilisation": 0.9, "life_h": 20000}, "rank_by": "weight"}
+AXES: list[Json] = [
+    {"name": "Y bridge", "quantity": 2, "application": worked_example(requirements={"utilisation": 0.8})},
+    {"name": "gripper", "application": cycle(phase(4, 300))},
+    {"name": "not ready", "application": {}},
+]
+MACHINE: Json = {
+    "title": "Packing line",
+    "reference": "4711",
+    "author": "MA",
+    "note": None,
+    "common": COMMON,
+    "axes": AXES,
+}
+
+
+def save(client: TestClient, /, headers: dict[str, str] | None = None, **parts: Any) -> str:
+    """Address of a new machine."""
+    answer = client.post(ADDRESS, json=MACHINE | parts, headers=headers)
+    assert answer.status_code == 201, answer.text
+    return str(answer.headers["location"])
+
+
+def read(client: TestClient, place: str) -> Json:
+    answer = client.get(place)
+    assert answer.status_code == 200, answer.text
+    found: Json = answer.json()
+    return found
+
+
+# --- Saving and reading -----------------------------------------------------------------------------------------------
+
+
+def test_a_machine_is_saved_and_read(client: TestClient, catalogue: Catalogue) -> None:
+    answer = client.post(ADDRESS, json=MACHINE)
+
+    assert answer.status_code == 201
+    found = read(client, answer.headers["location"])
+    assert answer.json() == {"id": found["id"], "url": f"/machines/{found['id']}"}
+    assert (found["title"], found["reference"], found["author"], found["note"]) == ("Packing line", "4711", "MA", None)
+    assert found["common"] == COMMON and found["order"] == [1, 2, 3]
+    assert found["counts"] == {"axes": 3, "suitable": 2, "unsuitable": 0, "open": 1}
+    assert [axis["application"] for axis in found["axes"]] == [axis["application"] for axis in AXES]
+    first = found["axes"][0]
+    assert first["resolved"]["requirements"] == {"utilisation": 0.8, "life_h": 20000}
+    best = select(Application.model_validate(first["resolved"]), catalogue).candidates[0]
+    assert (first["answer"]["selected"], first["answer"]["status"]) == (best.designation, "suitable")
+    assert first["answer"]["utilisation"] == pytest.approx(best.utilisation, rel=1e-12)  # alone, and among others
+    assert client.get(found["url"]).status_code == 200
+
+
+def test_an_axis_that_cannot_be_calculated_is_kept_open_with_its_problem(client: TestClient) -> None:
+    axes = [{"application": worked_example(unknown=1)}, {}, {"application": {"requirements": {"life_h": 10**30}}}]
+    found = read(client, save(client, axes=axes))
+    for axis in found["axes"]:
+        assert axis["answer"]["status"] == "open" and axis["answer"]["problem"]["status"] == 422
+    assert found["axes"][0]["answer"]["problem"]["errors"][0]["pointer"] == "/unknown"
+    assert found["axes"][2]["application"]["requirements"]["life_h"] == 10**30
+
+
+def test_what_is_read_is_saved_again(client: TestClient) -> None:
+    first = read(client, save(client))
+    again = read(client, save(client, **first))
+
+    changing = ("id", "url", "created", "updated", "saved")
+    assert {k: v for k, v in again.items() if k not in (*changing, "axes")} == {
+        k: v for k, v in first.items() if k not in (*changing, "axes")
+    }
+    for one, other in zip(first["axes"], again["axes"], strict=True):
+        assert {k: v for k, v in one.items() if k != "updated"} == {k: v for k, v in other.items() if k != "updated"}
+
+
+def test_some_fields_alone_are_read(client: TestClient) -> None:
+    place = save(client)
+    found = client.get(f"{place}?fields=title,axes.number,axes.answer").json()
+    assert found.keys() == {"title", "axes"} and found["axes"][0].keys() == {"number", "answer"}
+    whole = read(client, place)
+    assert client.get(f"{place}?fields=axes, order").json() == {"axes": whole["axes"], "order": whole["order"]}
+    assert client.get(f"{place}?fields=title,nothing").status_code == 422
+
+
+@pytest.mark.parametrize(
+    ("wrong", "pointer"),
+    [
+        ({"common": {"requirements": {"motor": {}}}}, "/common/requirements/motor"),
+        ({"common": {"output_load": {"radial_N": 5}}}, "/common/output_load/radial_N"),
+        ({"common": {"duty_cycle": {}}}, "/common/duty_cycle"),
+        ({"axes": [{"quantity": 0}]}, "/axes/0/quantity"),
+        ({"axes": [{"name": "x" * 41}]}, "/axes/0/name"),
+        ({"axes": [{"without": ["duty_cycle"]}]}, "/axes/0/without/0"),
+        ({"axes": [{"application": []}]}, "/axes/0/application"),
+        ({"note": "x" * 2001}, "/note"),
+        ({"nonsense": 1}, "/nonsense"),
+        ({"axes": [{}] * 10_001}, "/axes"),
+    ],
+)
+def test_a_machine_with_a_wrong_field_is_refused_there(client: TestClient, wrong: Json, pointer: str) -> None:
+    answer = client.post(ADDRESS, json={**MACHINE, **wrong})
+    assert answer.status_code == 422, answer.text
+    assert pointer in [error["pointer"] for error in answer.json()["errors"]]
+
+
+def test_the_same_key_saves_once_and_other_content_is_refused(client: TestClient) -> None:
+    key = {"Idempotency-Key": "k"}
+    first = client.post(ADDRESS, json=MACHINE, headers=key)
+    again = client.post(ADDRESS, json=MACHINE, headers=key)
+    other = client.post(ADDRESS, json=MACHINE | {"title": "x"}, headers=key)
+
+    assert again.json() == first.json() and again.headers["idempotency-replayed"] == "true"
+    assert other.status_code == 422 and other.json()["type"].endswith("idempotency-key-reused")
+    client.delete(first.headers["location"])
+    assert client.post(ADDRESS, json=MACHINE, headers=key).status_code == 410
+
+
+# --- Lists ------------------------------------------------------------------------------------------------------------
+
+
+def test_machines_and_selections_are_listed_apart_and_together(client: TestClient) -> None:
+    machine = save(client).rpartition("/")[2]
+    selection = client.post("/api/v1/selections", json={"application": worked_example(), "title": "one"}).json()["id"]
+
+    def ids(query: str) -> list[str]:
+        return [line["id"] for line in client.get(f"{ADDRESS}{query}").json()["machines"]]
+
+    assert ids("") == [machine] and ids("?kind=selection") == [selection]
+    assert ids("?kind=all") == [selection, machine]
+    assert [line["id"] for line in client.get("/api/v1/selections").json()["selections"]] == [selection]
+    assert read(client, f"{ADDRESS}/{selection}")["kind"] == "selection"
+    assert client.get(f"/api/v1/selections/{machine}").status_code == 404
+
+
+def test_a_list_is_searched_and_given_in_parts(client: TestClient) -> None:
+    ids = [save(client, title=f"line {n}", reference=f"r{n % 2}").rpartition("/")[2] for n in range(5)]
+
+    first = client.get(f"{ADDRESS}?limit=3")
+    rest = client.get(first.headers["link"].partition(">")[0][1:])
+
+    listed = [line["id"] for answer in (first, rest) for line in answer.json()["machines"]]
+    assert listed == ids[::-1] and rest.json()["next_cursor"] is None
+    found = {
+        query: len(client.get(f"{ADDRESS}?{query}").json()["machines"])
+        for query in ("search=LINE+3", "reference=r1", "author=MA", "author=x", "created_since=2000-01-01")
+    }
+    assert found == {
+        "search=LINE+3": 1,
+        "reference=r1": 2,
+        "author=MA": 5,
+        "author=x": 0,
+        "created_since=2000-01-01": 5,
+    }
+    gear = read(client, f"{ADDRESS}/{ids[0]}")["axes"][0]["answer"]["selected"]
+    assert len(client.get(f"{ADDRESS}?selected={gear}").json()["machines"]) == 5
+    assert client.get(f"{ADDRESS}?updated_since=2999-01-01T00:00:00Z").json()["machines"] == []
+    for wrong in ("limit=0", "limit=201", "cursor=x", "updated_since=yesterday", "kind=fleet", "nothing=1"):
+        assert client.get(f"{ADDRESS}?{wrong}").status_code in (400, 422)
+
+
+def test_deleted_ids_are_listed(client: TestClient) -> None:
+    place = save(client)
+    assert client.delete(place).status_code == 204
+    assert client.get(place).status_code == 404
+    listed = client.get(f"{ADDRESS}?deleted_since=2026-01-01").json()
+    assert listed["deleted"] == [place.rpartition("/")[2]] and listed["machines"] == []
+    assert client.get(f"{ADDRESS}?deleted_since=2999-01-01").json()["deleted"] == []
+
+
+# --- Changing a machine -----------------------------------------------------------------------------------------------
+
+
+def test_common_values_are_patched_and_every_axis_answered_anew(client: TestClient) -> None:
+    place = save(client)
+    before = read(client, place)
+    patch = {"common": {"requirements": {"utilisation": 0.1, "life_h": None}}, "title": None}
+
+    after = client.patch(place, json=patch).json()
+
+    assert after["common"] == {"requirements": {"utilisation": 0.1}, "rank_by": "weight"}
+    assert after["title"] is None and after["reference"] == "4711"
+    own, inherited, _ = after["axes"]
+    assert own["answer"]["selected"] == before["axes"][0]["answer"]["selected"]
+    assert inherited["resolved"]["requirements"] == {"utilisation": 0.1}
+    assert inherited["answer"] != before["axes"][1]["answer"]
+    refused = client.patch(place, json={"common": {"requirements": {"utilisation": 7}}})
+    assert refused.status_code == 422
+    assert refused.json()["errors"][0]["pointer"] == "/common/requirements/utilisation"
+
+
+def test_a_change_of_common_values_is_never_refused_for_an_axis(client: TestClient) -> None:
+    place = save(client)
+    after = client.patch(place, json={"common": {"requirements": {"ratios": [9999]}}}).json()
+    assert after["counts"] == {"axes": 3, "suitable": 0, "unsuitable": 0, "open": 3}
+
+
+def test_the_order_is_a_field_of_its_own(client: TestClient) -> None:
+    place = save(client)
+    after = client.patch(place, json={"order": [3, 1, 2]}).json()
+    assert [axis["number"] for axis in after["axes"]] == after["order"] == [3, 1, 2]
+    for wrong in ([1, 2], [1, 2, 3, 4], [1, 1, 2]):
+        assert client.patch(place, json={"order": wrong}).status_code == 422
+
+
+def test_of_two_who_change_one_state_the_second_learns_it(client: TestClient) -> None:
+    place = save(client)
+    seen = {"If-Match": client.get(place).headers["etag"]}
+    assert client.patch(place, json={"title": "a"}, headers=seen).status_code == 200
+    assert client.patch(place, json={"title": "b"}, headers=seen).status_code == 412
+    assert client.delete(place, headers=seen).status_code == 412
+    assert read(client, place)["title"] == "a"
+
+
+# --- Axes -------------------------------------------------------------------------------------------------------------
+
+
+def test_an_axis_is_read_with_its_selection(client: TestClient) -> None:
+    place = save(client)
+    axis = read(client, f"{place}/axes/1")
+    assert axis == read(client, place)["axes"][0]
+    selection = read(client, f"{place}/axes/1/selection")
+    posted = client.post("/api/v1/select", json=axis["resolved"]).json()
+    assert selection == posted
+    assert client.get(f"{place}/axes/3/selection").status_code == 409
+    assert client.get(f"{place}/axes/4").status_code == 404
+
+
+def test_an_axis_is_replaced_patched_and_two_axes_never_meet(client: TestClient) -> None:
+    place = save(client)
+    machine = client.get(place).headers["etag"]
+    tags = {n: client.get(f"{place}/axes/{n}").headers["etag"] for n in (1, 2)}
+
+    patch = {"application": {"requirements": {"utilisation": None}}, "quantity": 7}
+    one = client.patch(f"{place}/axes/1", json=patch, headers={"If-Match": tags[1]})
+    two = client.put(f"{place}/axes/2", json={"name": "new"}, headers={"If-Match": tags[2]})
+    late = client.patch(f"{place}/axes/1", json={"quantity": 8}, headers={"If-Match": tags[1]})
+
+    assert (one.status_code, two.status_code, late.status_code) == (200, 200, 412)
+    assert one.json()["resolved"]["requirements"]["utilisation"] == 0.9 and one.json()["quantity"] == 7
+    assert two.json()["application"] == {} and two.json()["answer"]["status"] == "open"
+    assert client.get(place).headers["etag"] == machine  # it stands for the set of axes, not for what they say
+    assert read(client, place)["counts"]["open"] == 2
+    assert client.patch(f"{place}/axes/1", json={"colour": "red"}).status_code == 422
+    assert client.patch(f"{place}/axes/1", json={"name": "x" * 41}).status_code == 422
+
+
+def test_numbers_are_never_used_again_and_bring_an_axis_back(client: TestClient) -> None:
+    place = save(client)
+    before = read(client, f"{place}/axes/3")
+    assert client.delete(f"{place}/axes/3").status_code == 204
+    assert client.delete(f"{place}/axes/3").status_code == 404
+
+    added = client.post(f"{place}/axes", json={"axes": [AXES[1], {"number": 3}]})
+
+    assert added.status_code == 201 and added.json()["numbers"] == [4, 3]
+    assert read(client, place)["order"] == [1, 2, 4, 3]
+    back = read(client, f"{place}/axes/3")
+    assert (back["name"], back["application"]) == (before["name"], before["application"])
+    for number in (3, 9):
+        assert client.post(f"{place}/axes", json={"axes": [{"number": number}]}).status_code == 422
+
+
+def test_axes_are_added_once_with_a_key(client: TestClient) -> None:
+    place, key = save(client), {"Idempotency-Key": "add"}
+    first, again = (client.post(f"{place}/axes", json={"axes": AXES}, headers=key) for _ in range(2))
+    assert first.json() == again.json() == {"numbers": [4, 5, 6]}
+    assert len(read(client, place)["axes"]) == 6
+    assert client.post(f"{place}/axes", json={"axes": AXES[:1]}, headers=key).status_code == 422
+
+
+def test_many_axes_change_at_once_and_the_effect_is_known_before(client: TestClient) -> None:
+    place = save(client)
+    body = {"numbers": [1, 2], "patch": {"application": {"requirements": {"utilisation": 0.05}}}}
+
+    dry = client.patch(f"{place}/axes?dry=1", json=body)
+    assert dry.status_code == 200, dry.text
+    assert read(client, place)["axes"][0]["application"] == AXES[0]["application"]  # nothing is saved
+    assert client.patch(f"{place}/axes", json=body).status_code == 428
+    tag = client.get(place).headers["etag"]
+    done = client.patch(f"{place}/axes", json=body, headers={"If-Match": tag})
+
+    assert done.status_code == 200 and done.json() == dry.json()
+    after = read(client, place)["axes"]
+    assert [axis["application"]["requirements"]["utilisation"] for axis in after[:2]] == [0.05, 0.05]
+    gone = [axis["number"] for axis in after[:2] if axis["answer"]["selected"] is None]
+    assert done.json()["without_gear"] == gone
+    assert client.patch(f"{place}/axes?dry=1", json=body | {"numbers": [99]}).status_code == 422
+    every = client.patch(f"{place}/axes", json={"numbers": "all", "patch": {"quantity": 3}}, headers={"If-Match": "*"})
+    assert every.status_code == 200 and {axis["quantity"] for axis in read(client, place)["axes"]} == {3}
+
+
+def test_people_on_two_axes_at_once_all_succeed(client: TestClient) -> None:
+    place = save(client, axes=[AXES[1]] * 6)
+    start = Barrier(6)
+
+    def change(number: int) -> int:
+        start.wait()
+        tag = client.get(f"{place}/axes/{number}").headers["etag"]
+        return client.patch(
+            f"{place}/axes/{number}", json={"quantity": 10 + number}, headers={"If-Match": tag}
+        ).status_code
+
+    with ThreadPoolExecutor(6) as pool:
+        assert list(pool.map(change, range(1, 7))) == [200] * 6
+    assert [axis["quantity"] for axis in read(client, place)["axes"]] == [10 + n for n in range(1, 7)]
+
+
+def test_of_those_who_change_one_axis_at_once_one_succeeds(client: TestClient) -> None:
+    place = save(client)
+    seen = {"If-Match": client.get(f"{place}/axes/1").headers["etag"]}
+    start = Barrier(4)
+
+    def change(number: int) -> int:
+        start.wait()
+        return client.patch(f"{place}/axes/1", json={"quantity": number}, headers=seen).status_code
+
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(change, range(2, 6)))
+    assert sorted(found) == [200, 412, 412, 412]
+    assert read(client, f"{place}/axes/1")["quantity"] == found.index(200) + 2
+
+
+def test_an_axis_saved_while_common_values_change_has_an_answer_under_the_new_ones(client: TestClient) -> None:
+    place = save(client, axes=[AXES[1]] * 3)
+    calls: list[Callable[[], Any]] = [
+        partial(client.patch, place, json={"common": {"requirements": {"utilisation": u}}}) for u in (0.2, 0.3, 0.4)
+    ]
+    calls += [partial(client.patch, f"{place}/axes/{n}", json={"quantity": 5}) for n in (1, 2, 3)]
+    with ThreadPoolExecutor(6) as pool:
+        assert {answer.status_code for answer in pool.map(lambda call: call(), calls)} == {200}
+
+    found = read(client, place)
+    for axis in found["axes"]:
+        whole = resolve(axis["application"], found["common"]).whole
+        assert axis["resolved"] == whole
+        answer = client.post("/api/v1/select", json=whole).json()
+        assert axis["answer"]["selected"] == answer["selected"] and axis["quantity"] == 5
+
+
+# --- Revisions --------------------------------------------------------------------------------------------------------
+
+
+def test_a_revision_stays_as_it_is_when_everything_changes(client: TestClient) -> None:
+    place = save(client)
+    frozen = client.post(f"{place}/revisions", json={"label": "A", "author": "MA", "checked": "KR", "note": "first"})
+    assert frozen.status_code == 201 and frozen.headers["location"] == f"{place}/revisions/A"
+    kept = read(client, f"{place}/revisions/A")
+
+    client.patch(place, json={"common": {"requirements": {"utilisation": 0.3}}, "title": "other"})
+    client.patch(f"{place}/axes/1", json={"application": {"requirements": None}})
+    client.delete(f"{place}/axes/2")
+
+    assert read(client, f"{place}/revisions/a") == kept  # in any case
+    assert kept["title"] == "Packing line" and kept["common"] == COMMON
+    assert [axis["application"] for axis in kept["axes"]] == [axis["application"] for axis in AXES]
+    assert kept["axes"][0]["resolved"]["requirements"] == {"utilisation": 0.8, "life_h": 20000}
+    client.post(f"{place}/revisions", json={"label": "b"})
+    listed = read(client, f"{place}/revisions")["revisions"]
+    assert [(line["label"], line["number"], line["axis_count"]) for line in listed] == [("b", 2, 2), ("A", 1, 3)]
+    assert (listed[1]["checked"], listed[1]["note"]) == ("KR", "first")
+    assert read(client, place)["revision"] == "b"
+
+
+@pytest.mark.parametrize(
+    ("label", "status"), [("A", 409), ("a", 409), ("now", 422), ("Today", 422), ("saved", 422), ("x y", 422)]
+)
+def test_a_label_is_unique_without_case_and_some_are_reserved(client: TestClient, label: str, status: int) -> None:
+    place = save(client)
+    client.post(f"{place}/revisions", json={"label": "A"})
+    assert client.post(f"{place}/revisions", json={"label": label}).status_code == status
+    assert client.get(f"{place}/revisions/nothing").status_code == 404
+
+
+def test_a_retry_of_freezing_with_its_key_gives_the_same_revision(client: TestClient) -> None:
+    place, key = save(client), {"Idempotency-Key": "freeze"}
+    first, again = (client.post(f"{place}/revisions", json={"label": "A"}, headers=key) for _ in range(2))
+    assert (first.status_code, again.status_code) == (201, 201) and first.json() == again.json()
+
+
+def test_a_saved_selection_has_its_first_revision(client: TestClient) -> None:
+    for given, label, note in (("B", "B", None), ("rev. 3", "saved", "rev. 3"), (None, "saved", None)):
+        body = {"application": worked_example(), "revision": given}
+        id = client.post("/api/v1/selections", json=body).json()["id"]
+        (line,) = read(client, f"{ADDRESS}/{id}/revisions")["revisions"]
+        assert (line["label"], line["note"]) == (label, note)
+        frozen = read(client, f"{ADDRESS}/{id}/revisions/{label}")
+        assert frozen["axes"][0]["resolved"] == read(client, f"/api/v1/selections/{id}")["application"]
+
+
+def test_two_states_are_compared_by_axis(client: TestClient) -> None:
+    place = save(client)
+    client.post(f"{place}/revisions", json={"label": "A"})
+    client.patch(place, json={"title": "new", "common": {"requirements": {"utilisation": 0.2}}})
+    client.delete(f"{place}/axes/3")
+    client.post(f"{place}/axes", json={"axes": [AXES[1]]})
+    client.post(f"{place}/revisions", json={"label": "B"})
+
+    found = read(client, f"{place}/differences?from=a&to=B")
+
+    assert found["title_block"] == [{"path": "title", "from": "Packing line", "to": "new"}]
+    assert found["common"] == [{"path": "requirements.utilisation", "from": 0.9, "to": 0.2}]
+    by_number = {axis["number"]: axis for axis in found["axes"]}
+    assert {number: axis["change"] for number, axis in by_number.items()} == {2: "changed", 3: "removed", 4: "added"}
+    assert found["same"] == 1  # the first has its own value
+    utilisation = {"path": "application.requirements.utilisation", "from": 0.9, "to": 0.2}
+    assert by_number[2]["inputs"] == [utilisation]
+    assert read(client, f"{place}/differences?from=B&to=now")["axes"] == []
+    assert read(client, f"{place}/differences?from=A&to=today")["axes"] == []  # the same engine and catalogue
+    back = read(client, f"{place}/differences?from=B&to=A")
+    assert {axis["number"]: axis["change"] for axis in back["axes"]} == {2: "changed", 3: "added", 4: "removed"}
+    for query, status in (("from=A&to=C", 404), ("from=today&to=today", 422), ("from=A", 422)):
+        assert client.get(f"{place}/differences?{query}").status_code == status
+
+
+def test_another_catalogue_says_which_axes_get_another_gear(
+    client: TestClient, ready_database: str, tmp_path: Path
+) -> None:
+    place = save(client, axes=[{"application": worked_example(requirements={"ratios": [5]})}, AXES[1]])
+    client.post(f"{place}/revisions", json={"label": "A"})
+    (tmp_path / "ratings.csv").write_text(WEAKER)
+    with TestClient(create_app(Settings(database_url=ready_database, catalogue_supplement=tmp_path))) as later:
+        found = read(later, f"{place}/differences?from=A&to=today")
+        assert [axis["number"] for axis in found["axes"] if axis["verdicts"]] == [1]
+        selected = next(cell for cell in found["axes"][0]["verdicts"] if cell["path"] == "selected")
+        assert (selected["from"], selected["to"]) == ("HPN-20A-5", "HPN-32A-5")
+        assert read(later, f"{place}/revisions/A")["axes"][0]["answer"]["selected"] == "HPN-20A-5"
+
+
+def test_an_axis_added_to_a_selection_makes_a_new_machine_that_begins_with_it(client: TestClient) -> None:
+    body = {"application": worked_example(), "title": "Rotary table"}
+    selection = client.post("/api/v1/selections", json=body).json()["id"]
+    before = read(client, f"/api/v1/selections/{selection}")
+
+    added = client.post(f"{ADDRESS}/{selection}/axes", json={"axes": [AXES[1]]})
+
+    assert added.status_code == 201 and added.json()["numbers"] == [2]
+    machine = read(client, added.headers["location"])
+    assert (machine["kind"], machine["title"], machine["order"]) == ("machine", "Rotary table", [1, 2])
+    assert machine["axes"][0]["application"] == before["application"]
+    assert read(client, f"/api/v1/selections/{selection}") == before
+    assert client.delete(f"{ADDRESS}/{selection}/axes/1").status_code == 409
+    assert read(client, f"{ADDRESS}/{selection}")["counts"]["axes"] == 1
+
+
+def test_a_selection_s_working_copy_changes_and_the_selection_stays(client: TestClient) -> None:
+    id = client.post("/api/v1/selections", json={"application": worked_example(), "title": "one"}).json()["id"]
+    before = read(client, f"/api/v1/selections/{id}")
+
+    changed = client.patch(f"{ADDRESS}/{id}/axes/1", json={"application": {"requirements": {"utilisation": 0.1}}})
+
+    assert changed.json()["answer"]["selected"] != before["selected"]
+    assert read(client, f"/api/v1/selections/{id}") == before
+
+
+# --- Gears ------------------------------------------------------------------------------------------------------------
+
+
+def test_the_gear_list_counts_quantities_and_ordering_codes(client: TestClient) -> None:
+    place = save(client)
+    client.patch(f"{place}/axes/3", json={"ordering_code": "HPN-20A-5-J6", "application": worked_example()})
+
+    found = read(client, f"{place}/gears")
+
+    listed = {gear["ordering_code"]: (gear["quantity"], gear["axes"]) for gear in found["gears"]}
+    axes = read(client, place)["axes"]
+    assert listed["HPN-20A-5-J6"] == (1, [3])
+    assert listed[axes[0]["answer"]["selected"]][0] >= 2
+    assert found["weight_kg"] == pytest.approx(sum(gear["weight_kg"] for gear in found["gears"]), rel=1e-12)
+    assert read(client, f"{place}/kinds")["least"] >= 1
+
+
+# --- Bounds -----------------------------------------------------------------------------------------------------------
+
+
+def test_bounds_hold_for_what_is_added(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(web_machines, "LIMITS", Limits(axes=4, phases=6, revisions=1))
+    place = save(client)
+    assert client.post(f"{place}/axes", json={"axes": [{}, {}]}).status_code == 422
+    assert client.post(f"{place}/axes", json={"axes": [{"application": worked_example()}]}).status_code == 422
+    assert client.post(f"{place}/axes", json={"axes": [{}]}).status_code == 201
+    assert read(client, place)["counts"]["axes"] == 4
+
+
+def test_a_machine_that_nobody_has_saved_takes_edits_and_no_revision(client: TestClient) -> None:
+    table = b"axis,torque_Nm,speed_rpm,duration_s\nhub,[40],[250],[1]\n"
+    page = client.post("/machines", files={"file": ("axes.csv", table)}, follow_redirects=False)
+    place = f"/api/v1{page.headers['location']}"
+    assert client.patch(f"{place}/axes/1", json={"quantity": 4}).json()["quantity"] == 4
+    refused = client.post(f"{place}/revisions", json={"label": "A"})
+    assert refused.status_code == 409 and "save it first" in refused.json()["detail"]
+    assert client.get(ADDRESS).json()["machines"] == []
