@@ -34,7 +34,10 @@ STYLES = {
 }
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""
 
-SCRIPTS = ("app", "sections", "connection", "insight", "plots", "tools")
+OF_FORM = ("form", "replacing", "undo", "messages", "requests", "rows", "answer")
+SCRIPTS = (*OF_FORM, "sections", "connection", "insight", "plots", "tools")
+"""Scripts of the form's page, each after those that it imports from."""
+
 ALONE = ("docs.js", "favicon.svg", "fleet-report.js", "plots.js")
 """Files that a page asks for by themselves; a fleet’s report holds its script."""
 
@@ -46,9 +49,16 @@ TEXT_SUFFIXES = {".css", ".html", ".js", ".json", ".map", ".mjs", ".svg", ".txt"
 
 COMMENTS = {
     ".css": re.compile(rb"/\*.*?\*/\s*", re.DOTALL),
-    ".js": re.compile(rb"^ *//.*\n|^ +", re.MULTILINE),
+    ".js": re.compile(rb"^ *//.*\n| // .*|^\s+", re.MULTILINE),
 }
-"""Comments of our own files by suffix: in scripts those on lines of their own, and how lines are indented."""
+"""Comments of our own files by suffix, in scripts also how lines are indented; no text of theirs has ` // ` in it."""
+
+
+IMPORT = re.compile(rb"^import .*\n", re.MULTILINE)
+BLANKS = re.compile(rb"(?<=[;{,(\[])\n+| ?(=>|===|!==|&&|\|\||\?\?) ?| (\+?=|<|>) |(?<=\)) (?=\{)")
+"""Ends of lines, and blanks around operators, that say nothing: no text of ours goes over lines or has operators."""
+
+EXPORT = re.compile(rb"^export ", re.MULTILINE)
 
 
 def sent(name: str) -> bytes:
@@ -58,16 +68,23 @@ def sent(name: str) -> bytes:
     return COMMENTS[path.suffix].sub(b"", content) if path.suffix in COMMENTS else content
 
 
+def module(name: str) -> bytes:
+    """One of our scripts: its names are its own but where it exports some, for those after it."""
+    content = sent(f"{name}.js")
+    own = EXPORT.sub(b"", IMPORT.sub(b"", content))
+    return own if EXPORT.search(content) else b"{\n" + own + b"}\n"
+
+
 def script(*names: str) -> bytes:
-    """htmx, and scripts of ours after it: one file, in which each keeps its names to itself."""
-    parts = [b"{\n" + sent(f"{name}.js") + b"}\n" for name in names]
-    return HTMX.read_bytes() + b'\n(() => {\n"use strict";\n' + b"".join(parts) + b"})();\n"
+    """htmx, and scripts of ours after it: one file, in which each has the exported names of those before it."""
+    parts = BLANKS.sub(rb"\1\2", b"".join(module(name) for name in names))
+    return HTMX.read_bytes() + b'\n(() => {"use strict";' + parts + b"})();\n"
 
 
 def style(faces: dict[str, bytes], *names: str) -> bytes:
     """Style sheets of ours as one on one line, which ask for the faces by their hashed names."""
     text = " ".join(b"".join(sent(f"{name}.css") for name in names).decode().split())
-    text = re.sub(r" ?([{};]) ?", r"\1", text).replace(";}", "}")
+    text = re.sub(r" ?([{};]) ?|([:,]) ", r"\1\2", text).replace(";}", "}")
     return re.sub(r"url\((hpn-[\w.-]+)\)", lambda url: f"url({hashed_name(url[1], faces[url[1]])})", text).encode()
 
 
@@ -80,7 +97,7 @@ def files() -> dict[str, bytes]:
         "plotly-basic.min.js": PLOTLY.read_bytes(),
         **{name: (SWAGGER / name).read_bytes() for name in ("swagger-ui.css", "swagger-ui-bundle.js")},
         "page.js": script(*SCRIPTS),
-        "gear.js": script("tools"),
+        "gear.js": script("form", "tools"),
         **{name: style(faces, *parts) for name, parts in STYLES.items()},
         **{name: sent(name) for name in ALONE},
     }

@@ -1,40 +1,40 @@
 // Signs of an answer that is on its way or doesn't come: busy after a moment, then a message; nothing typed is lost.
 
+import { formOf, isOfForm } from "./form.js";
+
 const BUSY_AFTER = 300;
 const SLOW_AFTER = 3000;
 const LONGEST_RETRY = 15000;
 
-let timers = [];
-let tries = 0; // without an answer so far
-let latest = null; // the request whose answer counts
+// Of the latest request, whose answer counts; `tries` are those without an answer so far.
+const line = { ctx: null, timers: [], tries: 0, downloads: false };
 
-const formOf = () => document.getElementById("application");
 const resultOf = () => document.getElementById("result");
-const ofForm = (event) => event.detail.ctx?.sourceElement?.id === "application";
+const ofForm = (event) => isOfForm(event.detail.ctx);
 const ours = (event) => ofForm(event) || event.detail.ctx?.sourceElement?.id === "paste-form";
 const retry = () => formOf()?.requestSubmit();
 
 function show(state, detail = "") {
-  for (const line of document.querySelectorAll("#connection [data-state]")) {
-    const stays = state && line.dataset.state === "unreached"; // until there is an answer, however often it is tried
-    if (!stays) line.hidden = line.dataset.state !== state;
+  for (const said of document.querySelectorAll("#connection [data-state]")) {
+    const stays = state && said.dataset.state === "unreached"; // until there is an answer, however often it is tried
+    if (!stays) said.hidden = said.dataset.state !== state;
   }
   document.querySelector("#connection [data-detail]").textContent = detail;
 }
 
 function settle() {
-  timers.forEach(clearTimeout);
+  line.timers.forEach(clearTimeout);
   document.querySelector('#connection [data-state="slow"]').hidden = true;
   resultOf()?.removeAttribute("aria-busy");
 }
 
 document.addEventListener("htmx:before:request", (event) => {
   if (!ours(event)) return;
-  latest = event.detail.ctx;
-  timers.forEach(clearTimeout);
-  timers = [
+  line.ctx = event.detail.ctx;
+  line.timers.forEach(clearTimeout);
+  line.timers = [
     setTimeout(() => ofForm(event) && resultOf()?.setAttribute("aria-busy", "true"), BUSY_AFTER), // a table changes nothing yet
-    setTimeout(() => tries || show("slow"), SLOW_AFTER),
+    setTimeout(() => line.tries || show("slow"), SLOW_AFTER),
   ];
 });
 
@@ -42,7 +42,7 @@ function fail(event, state, detail) {
   settle();
   if (ofForm(event)) resultOf()?.setAttribute("data-stale", "");
   show(state, detail);
-  if (state === "lost") timers = [setTimeout(retry, Math.min(1000 * 2 ** tries++, LONGEST_RETRY))];
+  if (state === "lost") line.timers = [setTimeout(retry, Math.min(1000 * 2 ** line.tries++, LONGEST_RETRY))];
 }
 
 // A reply that is no page (an overloaded server, a proxy's error) must never take the form's place.
@@ -58,25 +58,24 @@ document.addEventListener("htmx:before:swap", (event) => {
 document.addEventListener("htmx:after:swap", (event) => {
   if (!ours(event)) return;
   settle();
-  tries = 0;
+  line.tries = 0;
   resultOf()?.removeAttribute("data-stale");
   show(null);
 });
 
 document.addEventListener("htmx:error", (event) => ours(event) && event.detail.ctx.status !== "swapped" && fail(event, "lost"));
-document.addEventListener("htmx:finally:request", (event) => event.detail.ctx === latest && !tries && settle());
-addEventListener("online", () => tries && retry());
+document.addEventListener("htmx:finally:request", (event) => event.detail.ctx === line.ctx && !line.tries && settle());
+addEventListener("online", () => line.tries && retry());
 document.addEventListener("click", ({ target }) => {
   if (target.closest("[data-retry]")) retry();
   if (target.closest("[data-goes]")) formOf().querySelector('[aria-invalid="true"]')?.focus();
 });
 
 // A cycle that no address holds would be lost with the page, and so would what nobody has answered.
-let downloading = false;
 document.addEventListener("submit", (event) => {
-  downloading = Boolean(event.submitter?.hasAttribute("formaction"));
-  setTimeout(() => (downloading = false), 1000);
+  line.downloads = Boolean(event.submitter?.hasAttribute("formaction"));
+  setTimeout(() => (line.downloads = false), 1000);
 });
 addEventListener("beforeunload", (event) => {
-  if (!downloading && document.querySelector("[data-unsaved], [data-stale]")) event.preventDefault();
+  if (!line.downloads && document.querySelector("[data-unsaved], [data-stale]")) event.preventDefault();
 });

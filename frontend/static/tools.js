@@ -1,9 +1,7 @@
 // Dialogs, pasting into the duty table, and the keys. Everything hangs on the document, because the body is replaced
 // when somebody goes back in history.
 
-const formOf = () => document.getElementById("application");
-const contentOf = (form) => new URLSearchParams(new FormData(form)).toString();
-const isText = (element) => element.matches("textarea, select, input:not([type=checkbox], [type=radio], [type=button], [type=submit])");
+import { contentOf, formOf, isText } from "./form.js";
 
 // --- Dialogs ----------------------------------------------------------------------------------------------------------
 
@@ -54,11 +52,11 @@ document.addEventListener("input", (event) => {
   if (form?.matches("#paste-form, #ordering-form")) form.dispatchEvent(new Event("htmx:abort"));
 });
 
-// The preview is exchanged whole, so that each choice shows what the server read; who answers keeps the place.
-let answered = null;
+const left = { preview: null, form: null }; // the places that the focus comes back to
 
+// The preview is exchanged whole, so that each choice shows what the server read; who answers keeps the place.
 document.addEventListener("htmx:before:swap", (event) => {
-  if (event.detail.ctx?.sourceElement.id === "paste-form") answered = document.activeElement.closest("#paste-preview :is(select, input)")?.id;
+  if (event.detail.ctx?.sourceElement.id === "paste-form") left.preview = document.activeElement.closest("#paste-preview :is(select, input)")?.id;
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -67,16 +65,14 @@ document.addEventListener("htmx:after:swap", (event) => {
   if (ctx.kept) {
     document.getElementById("paste").close();
     document.querySelector("#duty input, #phases")?.focus();
-  } else if (answered) {
-    document.getElementById(answered)?.focus();
+  } else if (left.preview) {
+    document.getElementById(left.preview)?.focus();
   } else if (ctx.sourceEvent.type === "submit") {
     document.querySelector("#paste-preview :is(select.asked, .asked input, .take button)")?.focus({ preventScroll: false });
   }
 });
 
 // --- Keys -------------------------------------------------------------------------------------------------------------
-
-let cameFrom = null;
 
 const ROW_KEYS = { ArrowUp: "up", ArrowDown: "down", Delete: "remove" };
 
@@ -88,7 +84,7 @@ function keyInForm(event) {
   if (event.altKey && name && row) return press(`${name}-${row.id.split("-")[1]}`);
   if (event.ctrlKey && event.key === "Enter") {
     const result = document.getElementById("result");
-    cameFrom = event.target.id;
+    left.form = event.target.id;
     result.focus();
     return true;
   }
@@ -124,7 +120,7 @@ document.addEventListener("keydown", (event) => {
   if (document.querySelector("dialog[open]")) return;
   const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
   if (plain && event.key === "?" && !isText(event.target)) document.getElementById("shortcuts")?.showModal();
-  else if (plain && event.key === "Escape" && event.target.id === "result" && cameFrom) document.getElementById(cameFrom)?.focus();
+  else if (plain && event.key === "Escape" && event.target.id === "result") document.getElementById(left.form)?.focus();
   else if (asksMenu(event) && openMenu(event.target.closest("#duty tbody tr"))) event.preventDefault();
   else if (!event.shiftKey && formOf()?.contains(event.target) && keyInForm(event)) event.preventDefault();
 });

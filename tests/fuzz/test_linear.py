@@ -24,7 +24,7 @@ from hpn.tables.columns import Choices
 from hpn.tables.cycles import read_grids
 from hpn.tables.files import Wanted
 from hpn.tables.headings import LONGEST_WRITTEN, parts_of
-from hpn.tables.numbers import read_value, to_fields, to_wire
+from hpn.tables.numbers import Notation, read_value, to_fields
 from hpn.tables.reading import reading_of
 from hpn.tables.sheets import LONGEST_TEXT, Grid, grid_of
 from hpn.tables.table import Table
@@ -220,10 +220,10 @@ def as_workbook(text: str) -> bytes:
 def test_a_long_text_in_a_field_costs_no_more_steps(given: list[int]) -> None:
     def take(text: str) -> None:
         for marker in ("", "de.SI"):
-            pairs, _ = to_wire([("x", text), ("written", marker)], {"x": "Nm"})
-            to_fields([(pairs[0][1], "Nm")], Reader("de"), marker or None)
+            entry = Notation({"written": marker}).entry(text, "Nm")
+            to_fields([(entry, "Nm")], Reader("de"), marker or None)
             for kind in ("number", "whole", "text", "flag"):
-                read_value(pairs[0][1], kind)
+                read_value(entry, kind)
         harmless(f"={text}")
 
     for kind in few_kinds():

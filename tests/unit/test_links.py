@@ -184,6 +184,33 @@ def test_buttons_edit_rows_without_script(do: str, torques: list[str], focus: st
     assert form.focus == focus
 
 
+def test_buttons_are_played_one_after_the_other() -> None:
+    rows = "T=1&n=1&t=1&T=2&n=1&t=1&T=3&n=1&t=1"
+    form = read(f"{rows}&do=up:3&do=take:T-0:7&do=remove:2&do=loads&do=add")
+    assert [(row["T"], row["FRi"]) for row in form.rows] == [("7", ""), ("2", ""), ("", "")]
+    assert form.focus == "T-2"
+
+
+def test_a_number_that_a_german_form_offers_is_read_as_its_fields_are() -> None:
+    pressed = read("T=1,234&n=1&t=1&written=de.lb_in&do=take:T-0:1.234,5")
+    typed = read("T=1.234,5&n=1&t=1&written=de.lb_in")
+    assert pressed.application == typed.application
+    assert pressed.application is not None
+
+
+def test_phases_kept_aside_come_back_although_blank_ones_stand_beside_the_motion() -> None:
+    motion = "mech=rotary&J=1&mv=trapezoidal&ms=90&mt=1"
+    form = read(f"{motion}&T=&n=&t=&aside=T%3D5%26n%3D6%26t%3D7&do=way:phases")
+    assert [dict(row) for row in form.rows] == [{"T": "5", "n": "6", "t": "7"}]
+    assert form.asides == (motion,)
+
+
+def test_no_number_is_offered_in_place_of_numbers_by_size() -> None:
+    load = "T=1&n=1&t=1&FR=100&xR=2"
+    assert [problem.message.offers for problem in read(f"{load}&xc=1,234&written=en").problems] == [("1.234", "1234")]
+    assert [problem.message.offers for problem in read(f"{load}&xc=1,234; 20A: 21&written=en").problems] == [()]
+
+
 def test_last_row_removed_leaves_a_blank_one() -> None:
     assert [dict(row) for row in read("T=1&n=1&t=1&do=remove:1").rows] == [{"T": "", "n": "", "t": ""}]
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from hpn.application import Application
-from hpn.tables.numbers import Entry, Kind, read_decimal, read_value, to_wire
+from hpn.tables.numbers import Entry, Kind, Notation, read_decimal, read_value
 from hpn.web.form import link_reader
 from hpn.web.form.form import for_reader
 from hpn.web.form.link_writer import to_link
@@ -38,7 +38,7 @@ def test_a_whole_number_with_a_mark_is_asked_about(text: str, kind: Kind, said: 
 
 @pytest.mark.parametrize(("unit", "said"), [("h", "write 20 h or 20000 h"), ("Nm", "write 20.000 Nm or 20000 Nm")])
 def test_only_hours_are_mostly_whole(unit: str, said: str) -> None:
-    [(_, entry)], _ = to_wire([("x", f"20.000 {unit}"), ("written", "de")], {"x": unit})
+    entry = Notation({"written": "de"}).entry(f"20.000 {unit}", unit)
     assert isinstance(entry, Entry) and entry.refusal is not None
     assert entry.refusal.text == said
 
@@ -100,7 +100,7 @@ def test_unit_of_its_own_counts_before_the_readers_and_a_sum_is_in_the_readers(t
 
 
 def test_a_temperature_of_32_degrees_fahrenheit_is_0_degrees_celsius() -> None:
-    assert to_wire([("ta", "32"), ("written", "en.degF")], {"ta": "degC"})[0] == [("ta", "0")]
+    assert Notation({"written": "en.degF"}).entry("32", "degC") == "0"
 
 
 @pytest.mark.parametrize(
@@ -167,7 +167,7 @@ PRINTED = [
 
 @pytest.mark.parametrize(("written", "text", "torque"), PRINTED)
 def test_number_as_pages_print_it_may_be_typed(written: str, text: str, torque: float) -> None:
-    assert float(link_reader.in_wire_units([("T", text), ("written", written)])[0][0][1]) == torque
+    assert float(Notation({"written": written}).entry(text, "Nm")) == torque
 
 
 @pytest.mark.parametrize("text", [text for _, text, _ in PRINTED])

@@ -228,12 +228,6 @@ def test_an_edit_that_takes_the_place_of_inputs_brings_the_form(client: TestClie
     assert 'hx-target="#result"' in response.text
 
 
-def test_rows_say_where_they_stood_before_they_were_edited(client: TestClient) -> None:
-    rows = "/?T=1&n=1&t=1&T=2&n=1&t=1&T=3&n=1&t=1"
-    html = changes(client, RESULT, query=rows + "&do=down:1&do=remove:3&do=add").text
-    assert re.findall(r'<tr id="phase-(\d)"(?: data-was="(\d)")?', html) == [("0", "1"), ("1", "0"), ("2", "")]
-
-
 @pytest.mark.parametrize("count", [100, 300, 1000])
 def test_an_edit_of_a_long_cycle_is_as_short_as_one_of_a_short_cycle_but_for_its_link(
     client: TestClient, count: int

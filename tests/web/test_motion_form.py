@@ -144,9 +144,9 @@ def test_row_buttons_edit_moves_as_they_edit_phases() -> None:
     assert moves("remove:1") == ["dwell 0.4"]
     assert moves("add") == ["trapezoidal 0.8", "dwell 0.4", ""]
     added = read(f"{TURN}&do=add")
-    assert (added.focus, added.origins) == ("mv-2", (0, 1, None))
+    assert added.focus == "mv-2"
     assert added.application == read(TURN).application
-    assert read(f"{TURN}&do=down:1").origins == (1, 0)
+    assert read(f"{TURN}&do=down:1").focus == "mv-1"
     assert [symbol.name for symbol in read(f"{TURN}&do=loads").move_columns][-2:] == ["FRi", "FAi"]
 
 

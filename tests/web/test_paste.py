@@ -297,7 +297,9 @@ def test_long_link_is_told_the_way_to_paste(client: TestClient) -> None:
 
 def test_row_edits_are_applied_in_the_order_they_were_pressed(client: TestClient) -> None:
     page = client.get(f"/?{LINK}&do=add&do=remove:1&do=up:2", headers=HTMX)
-    assert re.findall(r'name="T" type="text" inputmode="decimal" value="([^"]*)"', page.text) == ["", "32"]
+    assert re.findall(
+        r'name="T" type="text" inputmode="decimal" value="([^"]*)"', page.text.partition("<template")[0]
+    ) == ["", "32"]
 
 
 @pytest.mark.parametrize(("head", "cell"), [("n [1/s]", "10"), ("n", "10 1/s")])

@@ -7,7 +7,7 @@ from html import unescape
 import pytest
 from starlette.testclient import TestClient
 
-from hpn.tables.numbers import Entry, to_wire
+from hpn.tables.numbers import Entry, Notation
 from hpn.web.form.link_reader import parse
 from hpn.web.form.symbols import units_of
 from hpn.words.reader import Reader
@@ -35,7 +35,7 @@ def printed(page: str) -> set[tuple[str, str]]:
 
 def typed(name: str, text: str, marker: str, mechanism: str) -> str:
     """A text in a field as the wire has it."""
-    [(_, wire)], _ = to_wire([(name, text), ("written", marker)], units_of(mechanism))
+    wire = Notation({"written": marker}).entry(text, units_of(mechanism)[name])
     assert not (isinstance(wire, Entry) and wire.refusal), (name, text, getattr(wire, "refusal", ""))
     return wire
 
@@ -121,7 +121,7 @@ def test_the_bodies_take_their_units_too() -> None:
     ],
 )
 def test_a_unit_of_another_quantity_is_refused_with_those_there_are(name: str, text: str, said: str) -> None:
-    [(_, wire)], _ = to_wire([(name, text), ("written", "en")], units_of("rotary"))
+    wire = Notation({"written": "en"}).entry(text, units_of("rotary")[name])
     assert isinstance(wire, Entry)
     assert isinstance(wire.refusal, Sentence)
     assert said in wire.refusal.text

@@ -44,9 +44,6 @@ _RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 FLAGS: Mapping[str, bool] = {"0": False, "1": True, "false": False, "true": True}
 """How no and yes are written."""
 
-Units = Mapping[str, str]
-"""Names of the fields that take numbers -> the suffix of their unit, blank for a pure number."""
-
 
 class Entry(str):
     """A number in the wire's notation, with what stands in its field, and why it can't be read if it can't."""
@@ -68,30 +65,24 @@ class Shown(NamedTuple):
     was: str
 
 
-def to_wire(pairs: Sequence[tuple[str, str]], units: Units) -> tuple[list[tuple[str, str]], str | None]:
-    """Pairs in the wire's units and notation, and the marker of what a form was written in; None for a link."""
-    given = dict(reversed(pairs))
-    marker = given.get(WRITTEN, "")
-    reader = Reader.of_marker(marker)
-    plain = [(name, text) for name, text in pairs if name not in (WRITTEN, WAS)]
-    known = _Known(reader, given.get(WAS, ""), as_printed=bool(marker))
-    entries = [(name, known.entry(text, units[name]) if name in units else text) for name, text in plain]
-    return entries, reader.marker if marker else None
+class Notation:
+    """Notation of the numbers of a form or link: its language and units, and the numbers that a form was made from.
 
+    `marker` is blank for a link. A form's numbers may be written as pages print them.
+    """
 
-class _Known:
-    """Numbers that a form was rendered from, and reading of what its reader writes, perhaps as pages print it."""
-
-    def __init__(self, reader: Reader, was: str, *, as_printed: bool) -> None:
-        self.reader, self.decimal = reader, reader.decimal if as_printed else ""
+    def __init__(self, fields: Mapping[str, str]) -> None:
+        self.reader = Reader.of_marker(fields.get(WRITTEN, ""))
+        self.marker = self.reader.marker if fields.get(WRITTEN) else None
+        self.decimal = self.reader.decimal if fields.get(WRITTEN) else ""
         self.was: dict[tuple[str, str], float] = {}
-        for token in was.split():
+        for token in fields.get(WAS, "").split():
             unit, _, text = token.partition(":")
             if unit in SYMBOLS and len(text) <= _LONGEST and NUMBER.fullmatch(text) and isfinite(float(text)):
-                self.was[unit, reader.measure(unit).written(float(text), DIGITS)] = float(text)
+                self.was[unit, self.reader.measure(unit).written(float(text), DIGITS)] = float(text)
 
     def entry(self, text: str, unit: str) -> str:
-        """A text of a field as an entry; what is no number stays as it is."""
+        """A text of a field in the wire's unit and notation; what is no number stays as it is."""
         if not self.reader.marker and NUMBER.fullmatch(text):
             return text
         plain, measure = self._number(text, unit)

@@ -53,13 +53,12 @@ class Condition:
 def condition_of(pairs: Sequence[tuple[str, str]], reader: Reader, default: EnvelopeQuery) -> Condition:
     """Condition in the query of an address; what is blank is as in the default."""
     given = dict(pairs)
-    typed = [(numbers.WRITTEN, given.get(WRITTEN_AT, "")), *((name, given.get(name, "")) for name in FIELDS)]
-    entries, written = numbers.to_wire(typed, _UNITS)
-    shown = numbers.to_fields([(text, _UNITS[name]) for name, text in entries], reader, written)
+    notation = numbers.Notation({numbers.WRITTEN: given.get(WRITTEN_AT, "")})
+    entries = [(name, notation.entry(given.get(name, ""), _UNITS[name])) for name in FIELDS]
+    shown = numbers.to_fields([(text, _UNITS[name]) for name, text in entries], reader, notation.marker)
     read = {name: numbers.read_value(text, "number") for name, text in entries if text.strip()}
     problems = {name: value for name, value in read.items() if isinstance(value, Sentence)}
     query = None if problems else _query({FIELDS[name]: value for name, value in read.items()}, default, problems)
-    decimal = Reader.of_marker(written or "").decimal
     fields = tuple(
         ConditionField(
             name,
@@ -67,7 +66,7 @@ def condition_of(pairs: Sequence[tuple[str, str]], reader: Reader, default: Enve
             _UNITS[name],
             text,
             getattr(default, FIELDS[name]),
-            problems[name].marked(decimal) if name in problems else None,
+            problems[name].marked(notation.reader.decimal) if name in problems else None,
         )
         for (name, _), text in zip(entries, shown.texts, strict=True)
     )

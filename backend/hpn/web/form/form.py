@@ -41,14 +41,12 @@ LONGEST_ASIDE = 8_000
 class Form:
     """A query as given, and the application it describes, or why it describes none.
 
-    `origins` are the places at which the rows of the duty table stood before the buttons that edit it. Of a motion the
-    mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia may be worked
-    out from. `asides` are the inputs of other ways to give the cycle. `written` is the marker of the language and units
-    in which a form was filled in; None for a link.
+    Of a motion the mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia
+    may be worked out from. `asides` are the inputs of other ways to give the cycle. `written` is the marker of the
+    language and units in which a form was filled in; None for a link.
     """
 
     rows: tuple[Mapping[str, str], ...]
-    origins: tuple[int | None, ...]
     texts: Mapping[str, str]
     lists: Mapping[str, tuple[str, ...]]
     moves: tuple[Mapping[str, str], ...] = ()

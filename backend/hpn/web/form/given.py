@@ -1,7 +1,7 @@
-"""The pairs of a query sorted by what they belong to: rows of phases, moves, bodies, single values, lists, the page."""
+"""The pairs of a query, sorted by what they belong to: rows of phases, moves and bodies, single values, lists, page."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from hpn.application import MOST_WISHES
@@ -9,9 +9,10 @@ from hpn.application.motion import MAXIMUM_MOVES
 from hpn.application.shaft_centre import MOST_SIZES
 from hpn.physics.motion.bodies import MOST_BODIES
 from hpn.tables.by_size import BySize, by_size
-from hpn.tables.numbers import WAS, WRITTEN
+from hpn.tables.inputs import NAME
+from hpn.tables.numbers import WAS, WRITTEN, Notation
 from hpn.web.form.labels import LABELS
-from hpn.web.form.rows import OF_ANY_ROW, OPTIONAL, SHARED, Rows, groups_of, shown_columns
+from hpn.web.form.rows import OF_ANY_ROW, SHARED, TEXT, Table, cells_of, groups_of, shown_columns
 from hpn.web.form.symbols import (
     BODY_BY_NAME,
     BY_NAME,
@@ -22,18 +23,44 @@ from hpn.web.form.symbols import (
     PHASE_BY_NAME,
     PHASE_SYMBOLS,
     SYMBOLS,
+    TURN_SYMBOLS,
+    units_of,
 )
-from hpn.web.form.ways import ASIDE
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.likeness import likeness
 from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
+
+Pairs = Sequence[tuple[str, str]]
+
+ASIDE = "aside"
+REST_FRICTION, REVERSES = "rf", "lr"
+"""Names of what phases have to say of their rest and of the sense of their torque, which a motion has by itself."""
+
+CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHANISM_SYMBOLS)}
+"""Names of a link that make its duty cycle, as phases or as a motion."""
+
+OF_ONE_WAY = {*CYCLE_NAMES, REST_FRICTION, REVERSES}
+"""Names of what belongs to one way alone in which a cycle is given."""
+
+_OF_MOTION = {symbol.name for symbol in (*TURN_SYMBOLS, *MECHANISM_SYMBOLS)}.difference(OF_ANY_ROW)
+_OF_PEOPLE = {*LABELS, NAME.role}
 
 PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, WRITTEN, WAS)
 """Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, the
 buttons that edit the rows, one after the other, and what was typed another way (repeated)."""
 
 REQUIRED = ("T", "n", "t")
+
+_UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
+"""Characters without width, which come with links copied from documents that break their lines with them."""
+
+_RATIO = re.compile(r"([0-9]{1,4}) ?: ?1")
+
+
+def visible(text: str) -> str:
+    """A part of a link without characters that have no width."""
+    return text if text.isascii() else _UNSEEN.sub("", text)
 
 
 @dataclass(frozen=True)
@@ -66,10 +93,13 @@ class FieldProblem:
 
 
 class Given:
-    """A query sorted into phases, scalars, lists and what belongs to the page."""
+    """A query sorted into rows of phases, moves and bodies, single values, lists and what belongs to the page.
 
-    def __init__(self) -> None:
-        self.columns: dict[str, list[str]] = {}
+    Texts are in the wire's units and notation. The buttons among the pairs are played on it afterwards.
+    """
+
+    def __init__(self, pairs: Pairs) -> None:
+        self.notation = Notation({visible(name): text for name, text in reversed(pairs)})
         self.scalars: dict[str, str] = {}
         self.single: dict[str, list[str]] = {}
         self.lists: dict[str, list[str]] = {}
@@ -77,14 +107,52 @@ class Given:
         self.page: dict[str, str] = {}
         self.presses: list[str] = []
         self.pins: list[str] = []
-        self.unknown: list[str] = []
+        self.unknown: list[tuple[str, str]] = []
         self.asides: list[str] = []
-        self.shown = set[str]()
+        self.typed: str | None = None
+        self.bodies = Table(BODY_BY_NAME, MOST_BODIES)
+        self._begin(pairs)
+        for name, text in pairs:
+            self._write(visible(name), text)
+        self.bodies.show(list(BODY_BY_NAME))
+        self._show()
+
+    def _begin(self, pairs: Pairs) -> None:
+        """Have empty tables; names and loads of rows belong to moves where anything of a motion is given."""
+        self.units = units_of(next((text.strip() for name, text in pairs if visible(name) == "mech"), ""))
+        self.has_motion = any(text.strip() and visible(name) in _OF_MOTION for name, text in pairs)
+        self.phases = Table((n for n in PHASE_BY_NAME if not (self.has_motion and n in OF_ANY_ROW)), MAXIMUM_PHASES)
+        self.moves = Table(MOVE_BY_NAME, MAXIMUM_MOVES)
+
+    # --- Sorting ------------------------------------------------------------------------------------------------------
+
+    def _write(self, name: str, text: str) -> None:
+        """Take one pair as it was typed."""
+        if name == TEXT:
+            self.typed = text.replace("\r\n", "\n")
+            for column, cell in cells_of(text):
+                self._write(column, cell)
+        else:
+            self.add(name, self.in_wire_units(name, text))
+
+    def in_wire_units(self, name: str, text: str) -> str:
+        """Text of a field in the wire's units and notation."""
+        if name in _OF_PEOPLE:  # in whose texts characters without width join emoji and letters
+            return text
+        text = visible(text)
+        if name == "i" and (match := _RATIO.fullmatch(text.strip())):
+            return match[1]
+        if name in BY_SIZE:
+            return BySize(part._replace(number=self._entry(name, part.number)) for part in by_size(text).parts)
+        return self._entry(name, text)
+
+    def _entry(self, name: str, text: str) -> str:
+        return self.notation.entry(text, self.units[name]) if name in self.units else text
 
     def add(self, name: str, text: str) -> None:
-        """Take one pair of the query."""
-        if name in PHASE_BY_NAME or name in MOVE_BY_NAME or name in BODY_BY_NAME:
-            self.columns.setdefault(name, []).append(text)
+        """Take one pair."""
+        if table := self.table_of(name):
+            table.add(name, text)
         elif name == "do":
             self.presses.append(text)
         elif name == "pin":
@@ -96,7 +164,7 @@ class Given:
         elif name in LABELS:
             self.labels.setdefault(name, []).append(text)
         elif name not in BY_NAME:
-            self.unknown.append(name)
+            self.unknown.append((name, text))
         elif name in BY_SIZE:
             self._add_by_size(name, by_size(text))
         elif not BY_NAME[name].many:
@@ -116,64 +184,83 @@ class Given:
         if parts:
             self.scalars[name] = BySize(parts[: MOST_SIZES + 1])  # one more than there may be is enough to refuse them
 
+    def table_of(self, name: str) -> Table | None:
+        """Table that a name is a column of, if any."""
+        if name in PHASE_BY_NAME and not (self.has_motion and name in OF_ANY_ROW):
+            return self.phases
+        return self.moves if name in MOVE_BY_NAME else self.bodies if name in BODY_BY_NAME else None
+
+    def _show(self) -> None:
+        """Have the optional columns that are used."""
+        self.shown = groups_of({**self.phases.counts, **self.moves.counts})
+        self._show_columns()
+
+    def _show_columns(self) -> None:
+        apart = SHARED if self.has_motion else ()
+        self.phases.show(shown_columns(PHASE_BY_NAME, self.shown.difference(apart)))
+        self.moves.show(shown_columns(MOVE_BY_NAME, self.shown))
+
+    # --- What buttons do ----------------------------------------------------------------------------------------------
+
+    def toggle(self, group: str) -> None:
+        """Show or leave out a group of optional columns."""
+        self.shown ^= {group}
+        self._show_columns()
+
+    def put(self, name: str, text: str) -> None:
+        """Have a text as the only one of a single value."""
+        self.single[name], self.scalars[name] = [text], text
+
+    def cycle(self) -> list[tuple[str, str]]:
+        """Pairs of the duty cycle and of what belongs to the way in which it is given."""
+        single = [(name, text) for name in self.single if name in OF_ONE_WAY for text in self.single[name]]
+        tables = (self.phases, self.moves)
+        return single + [
+            (name, row[name]) for table in tables for row in table.rows for name in table.counts if name in row
+        ]
+
+    def put_cycle(self, pairs: Pairs) -> None:
+        """Have another duty cycle, with what belongs to the way in which it is given."""
+        for name in OF_ONE_WAY:
+            self.single.pop(name, None)
+            self.scalars.pop(name, None)
+        self.typed = None
+        self._begin(pairs)
+        for name, text in pairs:
+            self.add(name, text)
+        self._show()
+
+    def keep_cycle(self) -> None:
+        """Leave out all but duty cycle, labels and buttons."""
+        for beside in (self.lists, self.page, self.pins, self.unknown, self.asides):
+            beside.clear()
+        for name in list(self.single):
+            if name not in CYCLE_NAMES:
+                del self.single[name]
+                self.scalars.pop(name, None)
+
+    # --- What is given ------------------------------------------------------------------------------------------------
+
     @property
-    def has_motion(self) -> bool:
-        """True where anything of a motion is given: loads of rows are then those of its moves."""
-        of_moves = (self.columns[name] for name in MOVE_BY_NAME if name in self.columns and name not in OF_ANY_ROW)
-        return any(symbol.name in self.scalars for symbol in MECHANISM_SYMBOLS) or any(
-            text.strip() for texts in of_moves for text in texts
-        )
-
-    def tables(self) -> tuple[Rows, Rows, Rows, str | None]:
-        """Phases, moves and bodies after the buttons that were pressed, and the element to go on from."""
-        self.shown = groups_of(self.columns)
-        moving = self.has_motion
-        phases = Rows(self._of_phases(), self._phase_columns(), MAXIMUM_PHASES)
-        moves = Rows(self.columns if moving else {}, self._move_columns(), MAXIMUM_MOVES)
-        bodies = Rows(self.columns, tuple(BODY_BY_NAME), MOST_BODIES)
-        focus = None
-        for press in self.presses[:50]:
-            do, _, number = press.partition(":")
-            k = int(number) - 1 if re.fullmatch(r"[0-9]{1,5}", number) else -1
-            if do in OPTIONAL:
-                self.shown ^= {do}
-                phases.show(self._phase_columns())
-                moves.show(self._move_columns())
-                focus = do
-            elif do == "one_way":
-                self.scalars["lr"], focus = "0", "f-lr"
-            elif do == "from_motion":
-                self.scalars["fm"], focus = "1", "f-fm"
-            elif do == "way":
-                focus = f"way-{number}"
-            elif do == "take":
-                focus = number.partition(":")[0]
-            elif do in ("inertia", "gravity"):
-                focus = do
-            elif do.endswith("_body"):
-                focus = bodies.press(do.removesuffix("_body"), k)
-            else:
-                focus = (moves if moving else phases).press(do, k)
-        return phases, moves, bodies, focus
-
-    def _of_phases(self) -> Mapping[str, list[str]]:
-        """Columns of the table of phases."""
-        apart = OF_ANY_ROW if self.has_motion else ()
-        return {name: texts for name, texts in self.columns.items() if name in PHASE_BY_NAME and name not in apart}
-
-    def _phase_columns(self) -> list[str]:
-        return shown_columns(PHASE_BY_NAME, self.shown - {*(SHARED if self.has_motion else ())})
-
-    def _move_columns(self) -> list[str]:
-        return shown_columns(MOVE_BY_NAME, self.shown)
+    def duty(self) -> Table:
+        """The table that makes the duty cycle."""
+        return self.moves if self.has_motion else self.phases
 
     def pinned(self) -> tuple[str, ...]:
         """Pinned gears, without the one whose button takes it away."""
         return tuple(pin for pin in self.pins if pin != self.page.get("unpin"))
 
+    def beside(self) -> list[tuple[str, str]]:
+        """Pairs of all that is given but rows and buttons; blank ones are left out."""
+        texts = {**self.single, **self.lists, **self.labels, **{name: [self.scalars.get(name, "")] for name in BY_SIZE}}
+        named = [(name, text) for name in texts for text in texts[name]]
+        page = [*self.page.items(), *(("pin", pin) for pin in self.pins), *((ASIDE, aside) for aside in self.asides)]
+        pairs = (*named, *page, *self.unknown)
+        return [(name, text) for name, text in pairs if text.strip() and name not in (WRITTEN, WAS)]
+
     def problems(self) -> Iterable[FieldProblem]:
         """Names that are unknown, repeated, or repeated unequally often."""
-        for name in self.unknown[:20]:
+        for name, _ in self.unknown[:20]:
             yield FieldProblem(name[:60], None, unknown_name(name))
         for name, texts in (*self.single.items(), *self.labels.items()):
             if len(texts) > 1:
@@ -183,28 +270,27 @@ class Given:
                 )
         for name, texts in self.labels.items():
             yield from (FieldProblem(name, None, fault) for fault in faults_of(texts[0]))
-        if (columns := self._of_phases()) and not self.presses:
-            yield from _unequal(columns, REQUIRED, MAXIMUM_PHASES)
+        if self.phases.counts and not self.presses:
+            yield from _unequal(self.phases, REQUIRED)
         if self.has_motion:
-            of_moves = {name: texts for name, texts in self.columns.items() if name in MOVE_BY_NAME}
-            yield from _unequal(of_moves, ("mv",), MAXIMUM_MOVES)
-            yield from _beside_motion(columns)
+            yield from _unequal(self.moves, ("mv",))
+            yield from _beside_motion(self.phases)
 
 
-def _unequal(columns: Mapping[str, list[str]], required: Sequence[str], most: int) -> Iterable[FieldProblem]:
-    counts = {name: len(columns.get(name, [])) for name in (*required, *columns)}
+def _unequal(table: Table, required: Sequence[str]) -> Iterable[FieldProblem]:
+    counts = {name: table.counts.get(name, 0) for name in (*required, *table.counts)}
     longest = max(counts, key=lambda name: counts[name])
     for name, count in counts.items():
         if count < counts[longest]:
             values = {"count": str(count), "name": name, "most": str(counts[longest]), "longest": longest}
             template = N_("missing: the link gives {count} × {name}, but {most} × {longest}")
-            yield FieldProblem(name, min(count, most), Sentence(template, values))
+            yield FieldProblem(name, min(count, table.most), Sentence(template, values))
 
 
-def _beside_motion(columns: Mapping[str, list[str]]) -> Iterable[FieldProblem]:
+def _beside_motion(phases: Table) -> Iterable[FieldProblem]:
     """Phases where a motion is given: blank ones, as a form submits them, count as absent."""
-    for name, texts in columns.items():
-        if filled := [k for k, text in enumerate(texts) if text.strip()]:
+    for name in phases.counts:
+        if filled := [k for k, row in enumerate(phases.rows) if row.get(name, "").strip()]:
             yield FieldProblem(name, filled[0], Sentence(N_("given beside a motion: give either phases or a motion")))
             return
 

@@ -11,11 +11,10 @@ from pydantic import BaseModel, ValidationError
 
 from hpn.physics.motion.bodies import Body, BodySum, sum_of
 from hpn.tables.numbers import read_value
-from hpn.web.form.given import FieldProblem
+from hpn.web.form.given import FieldProblem, Given
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.rows import filled
 from hpn.web.form.symbols import BODY_BY_NAME, Symbol
-from hpn.web.form.ways import Pairs, way_of
 from hpn.words.wording import Sentence
 
 DIGITS = 6
@@ -68,18 +67,13 @@ def _model(
         return None
 
 
-def with_figures(pairs: Pairs) -> Pairs:
-    """Pairs after the buttons that take what the helper comes to: an inertia, its gravity too."""
-    asked = {text for name, text in pairs if name == "do"}
-    figures: dict[str, float | None] = {}
-    if asked & {"inertia", "gravity"} and (found := _bodies_in(pairs).sum):
-        figures["J"] = found.inertia_kgm2
-        if "gravity" in asked and way_of(pairs) == "rotary" and found.gravity_radius_mm is not None:
-            figures |= {"mg": found.gravity_mass_kg, "rg": found.gravity_radius_mm}
-    kept = [(name, text) for name, text in pairs if name not in figures]
-    return [*kept, *((name, f"{value:.{DIGITS}g}") for name, value in figures.items())]
-
-
-def _bodies_in(pairs: Pairs) -> BodyTable:
-    columns = {name: [text for other, text in pairs if other == name] for name in BODY_BY_NAME}
-    return body_table([dict(zip(columns, texts, strict=True)) for texts in zip(*columns.values(), strict=False)])
+def hand_over(given: Given, *, gravity: bool) -> None:
+    """Take what the bodies come to as the mechanism's inertia, and as its gravity too."""
+    found = body_table(given.bodies.rows).sum
+    if found is None:
+        return
+    figures = {"J": found.inertia_kgm2}
+    if gravity and given.scalars.get("mech", "").strip() == "rotary" and found.gravity_radius_mm is not None:
+        figures |= {"mg": found.gravity_mass_kg, "rg": found.gravity_radius_mm}
+    for name, value in figures.items():
+        given.put(name, f"{value:.{DIGITS}g}")

@@ -14,17 +14,16 @@ from pydantic import ValidationError
 
 from hpn.application import Application
 from hpn.physics.motion.mechanisms import TYPES
-from hpn.tables import numbers
-from hpn.tables.by_size import BySize, Part, by_size
+from hpn.tables.by_size import BySize, by_size
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
+from hpn.web.form.buttons import play
 from hpn.web.form.form import Form
-from hpn.web.form.given import REQUIRED, FieldProblem, Given
-from hpn.web.form.helpers import BodyTable, body_table, with_figures
+from hpn.web.form.given import REQUIRED, FieldProblem, Given, Pairs
+from hpn.web.form.helpers import BodyTable, body_table
 from hpn.web.form.labels import LABELS
-from hpn.web.form.offers import with_offers
 from hpn.web.form.refusals import refusal_of
-from hpn.web.form.rows import TEXT, expanded, filled
+from hpn.web.form.rows import filled
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
@@ -35,17 +34,11 @@ from hpn.web.form.symbols import (
     PHASE_BY_NAME,
     Symbol,
     move_symbols,
-    units_of,
 )
-from hpn.web.form.ways import CYCLE_NAMES, Pairs, switched, taken_over
 from hpn.words.designations import OTHERS
-from hpn.words.reader import Reader
 from hpn.words.terms import FOR_OTHERS
 from hpn.words.titles import LONGEST_NAME, faults_of
 from hpn.words.wording import N_, Sentence, Typed
-
-_UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
-"""Characters without width, which come with links copied from documents that break their lines with them."""
 
 _OF_TWO_PHASES = re.compile(r"([1-9][0-9]{1,4}),([1-9][0-9]{1,4})")
 """Two values as likely as a number with decimals: `40,32`, which `9,3` is not."""
@@ -55,8 +48,6 @@ _SEVERAL = re.compile(r"(?![0-9]+,0+$)[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
 
 _VALUES = re.compile(r"(?![0-9]{1,2}(?:,[0-9]{3})+$)[+-]?[0-9]{1,6}(?:[,;] ?[+-]?[0-9]{1,6}){2,10}")
 """Several whole numbers in the field of one phase: `250,500,250`, but `1,234,567` is rather one."""
-
-_RATIO = re.compile(r"([0-9]{1,4}) ?: ?1")
 
 # Inputs beside which an error of a whole part of the model is shown.
 _PARTS = {
@@ -79,81 +70,40 @@ _TABLES = (
 
 def parse(pairs: Pairs) -> Form:
     """Form of a query, with everything that the query says and a message for each wrong field."""
-    typed = next((text for name, text in pairs if name == TEXT), None)
-    before = expanded(pairs)
-    pairs, written = in_wire_units(taken := with_offers(before))
-    typed = typed if taken == before else None
-    pairs = with_figures(switched(_own(pairs)))
-    form = replace(_parsed(pairs, written), typed=None if typed is None else typed.replace("\r\n", "\n"))
-    if ("do", "take") in pairs and form.has_motion and form.application is not None:
-        return _parsed(taken_over(pairs, form.application), written)
-    return form
-
-
-def _own(pairs: Pairs) -> Pairs:
-    """Pairs before another way is chosen: of the worked example its phases alone, since nobody has given the rest."""
-    buttons = [(name, text) for name, text in pairs if name == "do" and text.startswith("way:")]
-    before = [pair for pair in pairs if pair[0] != "do"]
-    if buttons and _parsed(before, None).application == Application.worked_example():
-        return [*((name, text) for name, text in pairs if name in LABELS or name in CYCLE_NAMES), *buttons]
-    return pairs
-
-
-def _parsed(pairs: Pairs, written: str | None) -> Form:
-    """Form of pairs in the wire's units."""
-    given = Given()
-    for name, text in pairs:
-        given.add(name, match[1] if name == "i" and (match := _RATIO.fullmatch(text.strip())) else text)
-    phases, moved, bodies, focus = given.tables()
-    rows, moves = phases.texts, moved.texts if given.has_motion else []
-    problems = [*given.problems(), *_list_problems(given)]
-    application = None
-    if not _untouched(given, rows, moves):
-        document, found = _document(rows, moves, given)
-        problems += found
-        application, refused = _validated(document, moves or rows, problems)
-        problems += refused
-    decimal = Reader.of_marker(written or "").decimal
+    given = Given(pairs)
+    focus = play(given, lambda sorted_pairs: _read(sorted_pairs)[0])
+    application, problems = _read(given)
+    decimal = given.notation.reader.decimal
     return Form(
-        rows=tuple(rows),
-        origins=(moved if given.has_motion else phases).origins,
+        rows=tuple(given.phases.rows),
         texts=given.scalars,
         lists={name: tuple(texts) for name, texts in given.lists.items()},
-        moves=tuple(moves),
+        moves=tuple(given.moves.rows) if given.has_motion else (),
         has_motion=given.has_motion,
-        bodies=body_table(bodies.texts) if given.has_motion else BodyTable(),
+        bodies=body_table(given.bodies.rows) if given.has_motion else BodyTable(),
         asides=tuple(given.asides),
         shown=frozenset(given.shown),
         gear=given.page.get("gear", "").strip(),
         pins=given.pinned(),
         focus=focus,
         problems=tuple(replace(problem, message=problem.message.marked(decimal)) for problem in problems),
-        application=None if problems else application,
-        written=written,
+        application=application,
+        written=given.notation.marker,
+        typed=given.typed,
         labels={name: given.labels.get(name, [""])[0] for name in LABELS},
     )
 
 
-def visible(text: str) -> str:
-    """A part of a link without characters that have no width."""
-    return _UNSEEN.sub("", text)
-
-
-def in_wire_units(pairs: Pairs) -> tuple[Pairs, str | None]:
-    """Pairs of a form as a link has them, and the marker of what they were written in: see `numbers`."""
-    # In the texts of people such characters join emoji and letters.
-    seen = [(visible(name), text if name in (*LABELS, NAME.role) else visible(text)) for name, text in pairs]
-    units = units_of(dict(seen).get("mech", "").strip())
-    pieces = [(name, by_size(text).parts if name in BY_SIZE else (Part("", text),)) for name, text in seen]
-    wire, marker = numbers.to_wire([(name, part.number) for name, parts in pieces for part in parts], units)
-    texts = iter(wire)
-    found: list[tuple[str, str]] = []
-    for name, parts in pieces:
-        if name in BY_SIZE:
-            found.append((name, BySize(Part(part.size, next(texts)[1]) for part in parts)))
-        elif name not in (numbers.WRITTEN, numbers.WAS):
-            found.append(next(texts))
-    return found, marker
+def _read(given: Given) -> tuple[Application | None, list[FieldProblem]]:
+    """Application that is given, or a message for each wrong field; neither where the form is still blank."""
+    problems = [*given.problems(), *_list_problems(given)]
+    if _untouched(given):
+        return None, problems
+    document, unread = _document(given)
+    problems += unread
+    application, refused = _validated(document, given.duty.rows, problems)
+    problems += refused
+    return None if problems else application, problems
 
 
 def _list_problems(given: Given) -> Iterable[FieldProblem]:
@@ -166,29 +116,30 @@ def _list_problems(given: Given) -> Iterable[FieldProblem]:
                 yield FieldProblem(name, k, message)
 
 
-def _untouched(given: Given, rows: list[dict[str, str]], moves: list[dict[str, str]]) -> bool:
+def _untouched(given: Given) -> bool:
     """The form was sent with its duty table still blank, but for the profile that a move begins with."""
-    begun = {"mv"} if "mt" in given.columns else set()
-    if any(map(filled, rows)) or any(filled(move).keys() - begun for move in moves):
+    columns = given.duty.counts
+    begun = {"mv"} if "mt" in columns else set()
+    if any(map(filled, given.phases.rows)):
         return False
-    if given.has_motion:
-        return "mv" in given.columns and given.scalars.get("mech", "").strip() in TYPES
-    return all(name in given.columns for name in REQUIRED)
+    if not given.has_motion:
+        return all(name in columns for name in REQUIRED)
+    begins = "mv" in columns and given.scalars.get("mech", "").strip() in TYPES
+    return begins and not any(filled(move).keys() - begun for move in given.moves.rows)
 
 
-def _document(
-    rows: Sequence[Mapping[str, str]], moves: Sequence[Mapping[str, str]], given: Given
-) -> tuple[dict[str, Any], list[FieldProblem]]:
+def _document(given: Given) -> tuple[dict[str, Any], list[FieldProblem]]:
     """Nested input of the application model; what can't be read is left out and reported."""
     problems: list[FieldProblem] = []
     cycle: dict[str, Any] = {}
     if given.has_motion:
         symbols = {symbol.name: symbol for symbol in move_symbols(given.scalars.get("mech", "").strip())}
-        cycle["motion"] = {"mechanism": {}, "moves": _table(moves, symbols, problems)}
+        cycle["motion"] = {"mechanism": {}, "moves": _table(given.moves.rows, symbols, problems)}
     else:
-        cycle["phases"] = _table(rows, PHASE_BY_NAME, problems)
+        cycle["phases"] = _table(given.phases.rows, PHASE_BY_NAME, problems)
         if len(cycle["phases"]) == 1:
-            problems = [_with_two_phases(problem, given.columns[problem.name]) for problem in problems]
+            columns = {name: [row[name] for row in given.phases.rows] for name in given.phases.names}
+            problems = [_with_two_phases(problem, columns[problem.name]) for problem in problems]
     document: dict[str, Any] = {"duty_cycle": cycle}
     for name, text in given.scalars.items():
         symbol = BY_NAME[name]
@@ -208,7 +159,8 @@ def _numbers_by_size(name: str, text: BySize, problems: list[FieldProblem]) -> d
     for part in text.parts:
         value = read_value(part.number, "number")
         if isinstance(value, Sentence):
-            problems.append(FieldProblem(name, None, _on_size(part.place, value) if part.size else value))
+            whole = len(text.parts) == 1 and not part.size
+            problems.append(FieldProblem(name, None, value if whole else _on_size(part.place, value)))
         elif part.place in found and part.size:
             template = N_("{size} is given twice: give each size once")
             problems.append(FieldProblem(name, None, Sentence(template, {"size": _size(part.place)})))

@@ -13,7 +13,7 @@ from hpn.web.door.uploads import read_fields
 from hpn.web.door.visit import address
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
-from hpn.web.form.ways import Pairs
+from hpn.web.form.given import Pairs
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,26 +7,30 @@ from dataclasses import replace
 from msgspec.structs import replace as with_values
 
 from hpn.tables.numbers import ONE_READING
-from hpn.web.form.given import FieldProblem
-from hpn.web.form.ways import Pairs
+from hpn.web.form.given import FieldProblem, Given
 from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence, Typed
 
 LIMITS = frozenset(("nm", "Tm", "Tmn", "nmr", "Jr", "bl", "m", "L", "pe", "pem", "u", "eta", "xc"))
 """Inputs that less of is asked more by: what motor, user or drawing allow."""
 
-_TAKEN = re.compile(r"take:(?:f-(?P<name>\w+)|(?P<column>\w+)-(?P<row>[0-9]{1,5})):(?P<text>.{1,60})")
-"""Value of a button: the element that takes the number, and the number, as in `take:f-Lb:20000`."""
+_TAKEN = re.compile(r"(?:f-(?P<name>\w+)|(?P<column>\w+)-(?P<row>[0-9]{1,5})):(?P<text>.{1,60})")
+"""Value of a button: the element that takes the number, and the number, as in `f-Lb:20000`."""
 
 
-def with_offers(pairs: Pairs) -> Pairs:
-    """Pairs after the buttons that take an offered number; the buttons stay, as they say where to go on."""
-    for taken in filter(None, [_TAKEN.fullmatch(text) for name, text in pairs if name == "do"]):
-        wanted, row = taken["name"] or taken["column"], int(taken["row"] or 0)
-        places = [k for k, (name, _) in enumerate(pairs) if name == wanted]
-        for k in places[row : row + 1]:
-            pairs = [*pairs[:k], (wanted, taken["text"]), *pairs[k + 1 :]]
-    return pairs
+def take(given: Given, offer: str) -> None:
+    """Put the number of a button in place of a text that is given."""
+    if taken := _TAKEN.fullmatch(offer):
+        name, row = taken["name"] or taken["column"], int(taken["row"] or 0)
+        text = given.in_wire_units(name, taken["text"])
+        table = given.table_of(name)
+        if table and name in table.counts and name in table.names and row < len(table.rows):
+            table.rows[row][name] = text
+            given.typed = None
+        elif name in given.single:
+            given.put(name, text)
+        elif name in given.lists:
+            given.lists[name][0] = text
 
 
 def beside_fields(problems: Sequence[FieldProblem], written: str | None, reader: Reader) -> tuple[FieldProblem, ...]:

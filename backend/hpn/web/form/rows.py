@@ -65,51 +65,60 @@ def used_columns(names: Iterable[str], used: Collection[str]) -> list[str]:
     return shown_columns(names, groups_of(used))
 
 
-class Rows:
-    """Rows of a table, each with the place at which it stood before the buttons that edit it.
+class Table:
+    """Rows of cells by column, and the buttons that edit them."""
 
-    The first of the columns takes the focus where a row is new.
-    """
-
-    def __init__(self, columns: Mapping[str, list[str]], names: Sequence[str], most: int) -> None:
+    def __init__(self, names: Iterable[str], most: int) -> None:
         self.names = list(names)
-        length = max((len(texts) for name, texts in columns.items() if name in self.names), default=0)
-        self.placed: list[tuple[int | None, dict[str, str]]] = [
-            (k, {name: texts[k] if k < len(texts := columns.get(name, [])) else "" for name in self.names})
-            for k in range(min(length, most + 1))
-        ]
+        self.most = most
+        self.counts: dict[str, int] = {}
+        self.rows: list[dict[str, str]] = []
 
-    @property
-    def texts(self) -> list[dict[str, str]]:
-        """The rows, at least a blank one."""
-        return [row for _, row in self.placed] or [dict.fromkeys(self.names, "")]
-
-    @property
-    def origins(self) -> tuple[int | None, ...]:
-        """Place at which each row stood."""
-        return tuple(origin for origin, _ in self.placed) or (None,)
+    def add(self, name: str, text: str) -> None:
+        """Put a cell below the last one of its column; rows beyond the first that is too many are left out."""
+        k = self.counts.get(name, 0)
+        self.counts[name] = k + 1
+        if k == len(self.rows) and k <= self.most:
+            self._append()
+        if k < len(self.rows):
+            self.rows[k][name] = text
 
     def show(self, names: Sequence[str]) -> None:
-        """Have these columns alone."""
+        """Have these columns alone, and at least a blank row."""
+        hidden = set(self.names).difference(names)
+        added = [name for name in names if name not in self.names]
         self.names = list(names)
-        self.placed = [(origin, {name: row.get(name, "") for name in self.names}) for origin, row in self.placed]
+        for row in self.rows:
+            for name in hidden:
+                del row[name]
+            row.update(dict.fromkeys(added, ""))
+        if not self.rows:
+            self._append()
 
     def press(self, do: str, k: int) -> str | None:
         """Edit the rows as one button does; the element to go on from, if it does anything."""
-        first = self.names[0]
         if do == "add":
-            self.placed.append((None, dict.fromkeys(self.names, "")))
-            return f"{first}-{len(self.placed) - 1}"
-        if not 0 <= k < len(self.placed):
+            self._append()
+            return self._first_of(len(self.rows) - 1)
+        if not 0 <= k < len(self.rows):
             return None
         if do == "remove":
-            del self.placed[k]
-            return f"{first}-{min(k, max(len(self.placed) - 1, 0))}"
+            del self.rows[k]
+            if not self.rows:
+                self._append()
+            return self._first_of(min(k, len(self.rows) - 1))
         if do in ("up", "down"):
-            to = min(max(k + (1 if do == "down" else -1), 0), len(self.placed) - 1)
-            self.placed.insert(to, self.placed.pop(k))
-            return f"{first}-{to}"
+            to = min(max(k + (1 if do == "down" else -1), 0), len(self.rows) - 1)
+            self.rows.insert(to, self.rows.pop(k))
+            return self._first_of(to)
         return None
+
+    def _append(self) -> None:
+        self.rows.append(dict.fromkeys(self.names, ""))
+
+    def _first_of(self, k: int) -> str:
+        """Element of the first cell of a row."""
+        return f"{self.names[0]}-{k}"
 
 
 def filled(row: Mapping[str, str]) -> dict[str, str]:
@@ -117,23 +126,14 @@ def filled(row: Mapping[str, str]) -> dict[str, str]:
     return {name: text for name, text in row.items() if text.strip()}
 
 
-def expanded(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Pairs of a form with repeated T, n, t, and the others where used, in place of the text of the phases."""
-    plain = [pair for pair in pairs if pair[0] != TEXT]
-    for name, text in pairs:
-        if name == TEXT:
-            lines = text.rstrip().splitlines()[: MAXIMUM_PHASES + 1]
-            plain += _phase_pairs([_cells(line) for line in lines])
-    return plain
-
-
 def _cells(line: str) -> list[str]:
     """Cells of a line, separated by tabs, semicolons or blanks; a tenth is the name, with all that follows."""
     return re.split(r" *[;\t] *| +", line.strip(" "), maxsplit=len(PHASE_ROLES))
 
 
-def _phase_pairs(rows: Sequence[Sequence[str]]) -> list[tuple[str, str]]:
-    """Pairs of rows in the order T, n, t, FRi, FAi, Tpk, npk, Trms, Tlo, pn; what a short row lacks is blank."""
+def cells_of(text: str) -> list[tuple[str, str]]:
+    """Cells of phases in a text: T, n, t, and the others where used, by name; what a line lacks is blank."""
+    rows = [_cells(line) for line in text.rstrip().splitlines()[: MAXIMUM_PHASES + 1]]
     columns = {
         name: [row[k] if k < len(row) else "" for row in rows] for k, name in enumerate((*PHASE_ROLES, NAME.role))
     }

@@ -3,31 +3,21 @@
 A form has the inputs of one way; those of each other stand in a field `aside` of its own, as the query that they make.
 """
 
-from collections.abc import Iterator, Sequence
 from urllib.parse import parse_qsl, urlencode
 
 from hpn.application import Application, DutyCycle
 from hpn.application.phase import Phase
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry
+from hpn.web.form.given import OF_ONE_WAY, REST_FRICTION, REVERSES, Given, Pairs
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.rows import OF_ANY_ROW
-from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, TURN_SYMBOLS, mechanism_symbols
+from hpn.web.form.symbols import PHASE_SYMBOLS, mechanism_symbols
 from hpn.words.wording import N_
 
-Pairs = Sequence[tuple[str, str]]
+PHASES, MOTION = "phases", "motion"
 
-ASIDE, PHASES, MOTION = "aside", "phases", "motion"
-REST_FRICTION, REVERSES = "rf", "lr"
-"""Names of what phases have to say of their rest and of the sense of their torque, which a motion has by itself."""
-
-CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHANISM_SYMBOLS)}
-"""Names of a link that make its duty cycle, as phases or as a motion."""
-
-_OF_ITS_WAY = {*CYCLE_NAMES, REST_FRICTION, REVERSES}
-"""Names of what belongs to one way alone."""
-
-_OF_PHASES_ALONE = {symbol.name for symbol in PHASE_SYMBOLS} - {*OF_ANY_ROW}
+_OF_PHASES_ALONE = {symbol.name for symbol in PHASE_SYMBOLS}.difference(OF_ANY_ROW)
 
 MOST_FIELDS = 20_000
 DIGITS = 6
@@ -51,30 +41,27 @@ def way_of(pairs: Pairs) -> str:
     return given if given in TYPES else PHASES
 
 
-def switched(pairs: Pairs) -> Pairs:
-    """Pairs after the buttons that choose another way: its inputs as they were left, those of before aside."""
-    for wanted in [text.removeprefix("way:") for name, text in pairs if name == "do" and text.startswith("way:")]:
-        pairs = list(_switched(pairs, wanted))
-    return pairs
-
-
-def _switched(pairs: Pairs, wanted: str) -> Iterator[tuple[str, str]]:
-    own = [(name, text) for name, text in pairs if name in _OF_ITS_WAY]
-    kept = {way_of(query): query for query in map(_read, (text for name, text in pairs if name == ASIDE))}
+def switch(given: Given, wanted: str) -> None:
+    """Choose another way: its inputs as they were left, those of before aside."""
+    own = given.cycle()
+    kept = {way_of(query): query for query in map(_read, given.asides)}
     here = way_of(own)
-    if here != PHASES and (stray := [(name, text) for name, text in own if name in _OF_PHASES_ALONE]):
-        kept[PHASES] = stray  # given beside a motion
-        own = [pair for pair in own if pair not in stray]
+    if here != PHASES:
+        stray = [pair for pair in own if pair[0] in _OF_PHASES_ALONE]  # given beside a motion
+        own = [pair for pair in own if pair[0] not in _OF_PHASES_ALONE]
+        if _says_anything(stray):
+            kept[PHASES] = stray
     if wanted == MOTION:
         wanted = here if here != PHASES else next((way for way in reversed(kept) if way != PHASES), TYPES[0])
     if wanted != here and wanted in START:
         before, own = own, list(kept.pop(wanted, []) or _begun(own, here, wanted))
         kept[here] = before
-    yield from own
-    yield from ((name, text) for name, text in pairs if name not in _OF_ITS_WAY and name != ASIDE)
-    for query in kept.values():
-        if any(text.strip() for name, text in query if name not in ("mech", "mv")):
-            yield (ASIDE, _written(query))
+    given.put_cycle(own)
+    given.asides = [_written(query) for query in kept.values() if _says_anything(query)]
+
+
+def _says_anything(query: Pairs) -> bool:
+    return any(text.strip() for name, text in query if name not in ("mech", "mv"))
 
 
 def _begun(own: Pairs, here: str, wanted: str) -> Pairs:
@@ -85,20 +72,20 @@ def _begun(own: Pairs, here: str, wanted: str) -> Pairs:
     return parse_qsl(START[wanted], keep_blank_values=True)
 
 
-def taken_over(pairs: Pairs, application: Application) -> Pairs:
-    """Pairs with the phases that come out of a motion in place of the motion, which is kept aside."""
+def take_over(given: Given, application: Application | None) -> bool:
+    """Have the phases that come out of a motion in place of the motion, which is kept aside; False without one."""
+    if application is None or not given.has_motion:
+        return False
     phases = tuple(map(_rounded, application.duty_cycle.load_phases))
     cycle = to_link(Application(duty_cycle=DutyCycle(phases=phases))).removeprefix("/?")
-    own = [(name, text) for name, text in pairs if name in _OF_ITS_WAY]
-    rest = [(name, text) for name, text in pairs if name not in (*_OF_ITS_WAY, "do") and not _is_of_phases(name, text)]
-    says = [(REVERSES, next((text for name, text in own if name == REVERSES and text.strip()), "0"))]
+    own = given.cycle()
+    says = [(REVERSES, given.scalars.get(REVERSES, "0"))]
     if friction := application.duty_cycle.rest_friction_Nm:
         says.append((REST_FRICTION, repr(_in_few_digits(friction))))
-    return [*_read(cycle), *says, *rest, (ASIDE, _written(own)), ("do", f"way:{PHASES}")]
-
-
-def _is_of_phases(name: str, text: str) -> bool:
-    return name == ASIDE and way_of(_read(text)) == PHASES
+    given.put_cycle([*_read(cycle), *says])
+    asides = [query for query in given.asides if way_of(_read(query)) != PHASES]
+    given.asides = [*asides, _written(own)]
+    return True
 
 
 def _rounded(phase: Phase) -> Phase:
@@ -116,7 +103,7 @@ def _read(query: str) -> Pairs:
         pairs = parse_qsl(query, keep_blank_values=True, max_num_fields=MOST_FIELDS)
     except ValueError:
         return []
-    return [(name, text) for name, text in pairs if name in _OF_ITS_WAY]
+    return [(name, text) for name, text in pairs if name in OF_ONE_WAY]
 
 
 def _written(pairs: Pairs) -> str:

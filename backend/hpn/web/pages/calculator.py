@@ -24,12 +24,11 @@ from hpn.web.door.pools import compute, worked
 from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form, address_of_empty, for_reader
-from hpn.web.form.given import FieldProblem
+from hpn.web.form.given import CYCLE_NAMES, FieldProblem
 from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK
 from hpn.web.form.offers import beside_fields
-from hpn.web.form.ways import CYCLE_NAMES
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment

@@ -29,11 +29,11 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
+from hpn.web.form.given import CYCLE_NAMES, Given, Pairs
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import query_part
-from hpn.web.form.rows import TEXT, expanded, used_columns
+from hpn.web.form.rows import TEXT, filled, used_columns
 from hpn.web.form.symbols import BY_NAME, PHASE_BY_NAME
-from hpn.web.form.ways import CYCLE_NAMES, Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.reading import read
 from hpn.web.pages.templates import environment
@@ -72,7 +72,7 @@ def start(request: Request) -> Response:
 
 async def paste(request: Request) -> Response:
     """Previews what was pasted or uploaded, or takes it."""
-    given = Given()
+    given = PastePost()
     try:
         given = await compute(request, "pages", _given, await read_parts(request))
         reading = Reading()
@@ -88,7 +88,7 @@ async def paste(request: Request) -> Response:
 
 
 @dataclass(frozen=True, slots=True)
-class Given:
+class PastePost:
     """A post: the form that it came from, a text or a file, and the choices."""
 
     link: str = ""
@@ -97,7 +97,7 @@ class Given:
     fields: Mapping[str, str] = field(default_factory=dict)
 
 
-def _given(parts: Mapping[str, bytes]) -> Given:
+def _given(parts: Mapping[str, bytes]) -> PastePost:
     fields = {name: decoded(content) for name, content in parts.items() if name != "file"}
     link, text = query_part(fields.get("link", "")), tidied(fields.get("text", ""))
     file = parts.get("file", b"")
@@ -105,10 +105,10 @@ def _given(parts: Mapping[str, bytes]) -> Given:
         file = unpacked(book.encode(errors="replace"))
         if not file:
             raise Problem(422, Sentence(NOTHING))
-    return Given(link, text, file, fields)
+    return PastePost(link, text, file, fields)
 
 
-def _answer(request: Request, given: Given, reading: Reading) -> Response:
+def _answer(request: Request, given: PastePost, reading: Reading) -> Response:
     text = reading.text if given.file else given.text
     if reading.is_application:
         return _of_application(request, given.link, text, given.fields.get("take", ""))
@@ -184,20 +184,19 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     In place of the worked example they begin without its pause, emergency stop and ratio.
     """
     assert draft.table is not None
-    pairs, _ = link_reader.in_wire_units(expanded(pairs_of(draft.link)))
-    dropped = {*CYCLE_NAMES, "do", TEXT}
+    given = Given(pairs_of(draft.link))
+    dropped = set(CYCLE_NAMES)
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     if stop := draft.table.stop_Nm:
         dropped |= {name for name, symbol in BY_NAME.items() if symbol.path[0] == "emergency_stop" and name != "Nk"}
-    rest = [(name, value) for name, value in pairs if value.strip() and name not in dropped]
+    rest = [(name, value) for name, value in given.beside() if name not in dropped]
     rest += [("Tk", stop)] if stop else []
     names = draft.table.names or ("",) * len(draft.table.phases)
     named = zip(names, draft.table.phases, strict=True)
     rows = [{NAME.role: name, **dict(zip(PHASE_ROLES, phase, strict=True))} for name, phase in named]
     if append:
-        given = link_reader.parse(pairs).rows
-        rows = [dict(row) for row in given if any(text.strip() for text in row.values())] + rows
+        rows = [*filter(filled, given.phases.rows), *rows]
     used = {name for row in rows for name, text in row.items() if text}
     return [(name, row.get(name, "")) for row in rows for name in used_columns(PHASE_BY_NAME, used)] + rest
 

@@ -25,7 +25,7 @@ from hpn.store import ID, SavedSelection
 from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.visit import absolute, current
-from hpn.web.form import link_reader
+from hpn.web.form.given import visible
 from hpn.web.pages import calculator
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
@@ -69,7 +69,7 @@ EXPORTS = (
 async def show_selection(request: Request) -> Response:
     """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
     id = request.path_params["id"]
-    if (seen := link_reader.visible(id)) != id and ID.fullmatch(seen):
+    if (seen := visible(id)) != id and ID.fullmatch(seen):
         return RedirectResponse(f"/selections/{seen}?{request.url.query}".removesuffix("?"), 308)
     return await found(request, id, partial(_shown, request))
 

@@ -21,9 +21,9 @@ from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
+from hpn.web.form.given import Pairs
 from hpn.web.form.labels import FIELDS, TITLE_BLOCK, query_of
 from hpn.web.form.linked import query_part
-from hpn.web.form.ways import Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.calculator import Answer
 from hpn.web.pages.rendering import reason

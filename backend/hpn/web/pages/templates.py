@@ -28,6 +28,7 @@ from hpn.installed import data_folder, has_extra
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
 from hpn.web.form import symbols, ways
+from hpn.web.form.form import ROWS_IN_TABLE
 from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.form.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
 from hpn.web.pages import assets
@@ -298,6 +299,7 @@ GLOBALS: dict[str, Any] = {
     "LANGUAGE_NAMES": LANGUAGE_NAMES,
     "LISTED": LISTED,
     "LOADS": LOADS,
+    "ROWS_IN_TABLE": ROWS_IN_TABLE,
     "unit_of": units.symbol_of,
     "units": units,
     "MECHANISMS": MECHANISMS,

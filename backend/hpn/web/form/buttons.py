@@ -1,0 +1,57 @@
+"""Buttons of the form that edit what is given, played on it one after the other."""
+
+import re
+from collections.abc import Callable
+
+from hpn.application import Application
+from hpn.web.form import helpers, offers, ways
+from hpn.web.form.given import REVERSES, Given
+from hpn.web.form.rows import OPTIONAL
+
+MOST_PRESSES = 50
+
+Reads = Callable[[Given], Application | None]
+"""Reading of what is given; None where it describes no application."""
+
+
+def play(given: Given, application_of: Reads) -> str | None:
+    """Play the buttons that were pressed; the element to go on from, if there is one."""
+    example = Application.worked_example()
+    if any(press.startswith("way:") for press in given.presses) and application_of(given) == example:
+        given.keep_cycle()  # nobody has given the rest
+    focus = None
+    for press in given.presses[:MOST_PRESSES]:
+        do, _, what = press.partition(":")
+        focus = _press(given, do, what, application_of)
+    return focus
+
+
+def _press(given: Given, do: str, what: str, application_of: Reads) -> str | None:
+    """Play one button, which may say what or which row it is for; the element to go on from."""
+    focus: str | None = do
+    match do:
+        case "one_way" | "from_motion":
+            name, text = _SETS[do]
+            given.put(name, text)
+            focus = f"f-{name}"
+        case "inertia" | "gravity":
+            helpers.hand_over(given, gravity=do == "gravity")
+        case "way":
+            ways.switch(given, what)
+            focus = f"way-{what}"
+        case "take" if what:
+            offers.take(given, what)
+            focus = what.partition(":")[0]
+        case "take":
+            focus = f"way-{ways.PHASES}" if ways.take_over(given, application_of(given)) else None
+        case _ if do in OPTIONAL:
+            given.toggle(do)
+        case _:
+            k = int(what) - 1 if re.fullmatch(r"[0-9]{1,5}", what) else -1
+            table = given.bodies if do.endswith("_body") else given.duty
+            focus = table.press(do.removesuffix("_body"), k)
+    return focus
+
+
+_SETS = {"one_way": (REVERSES, "0"), "from_motion": ("fm", "1")}
+"""Buttons that give a single value."""

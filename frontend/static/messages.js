@@ -1,0 +1,65 @@
+// Messages beside the fields, and what is still being typed.
+
+import { formOf } from "./form.js";
+
+// The result lists what is wrong; each message stands beside the field that it names, of a cell below its table.
+export function mark() {
+  const form = formOf();
+  for (const message of form.querySelectorAll("p.error")) message.remove();
+  for (const field of form.querySelectorAll("[aria-invalid]")) {
+    field.removeAttribute("aria-invalid");
+    describe(field, (id) => !id.startsWith("e-"));
+  }
+  for (const item of document.querySelectorAll("#problems [data-field]")) {
+    const field = document.getElementById(item.dataset.field);
+    if (!form.contains(field)) continue;
+    const first = !field.hasAttribute("aria-invalid");
+    const id = `e-${field.id.replace(/^f-/, "")}`;
+    const ofCell = field.closest("#duty");
+    const message = Object.assign(document.createElement("p"), { className: "error" });
+    const whole = ofCell || field.id === "phases";
+    message.append(...[...item.cloneNode(true).childNodes].filter((part) => whole || part.matches?.("span, .offer")));
+    if (ofCell) document.getElementById("duty-errors").append(message);
+    else if (field.matches("fieldset")) field.append(message);
+    else (field.closest(".control") ?? field).after(message);
+    if (!first) continue;
+    message.querySelector("span").id = id;
+    field.setAttribute("aria-invalid", "true");
+    describe(field, () => true, id);
+  }
+}
+
+function describe(field, keep, added) {
+  const ids = [added, ...(field.getAttribute("aria-describedby") ?? "").split(" ").filter(keep)].filter(Boolean);
+  if (ids.length) field.setAttribute("aria-describedby", ids.join(" "));
+  else field.removeAttribute("aria-describedby");
+}
+
+// Nothing works unseen: what is wrong is unfolded.
+export function unfold() {
+  for (const field of document.querySelectorAll('#application details:not([open]) [aria-invalid="true"]')) field.closest("details").open = true;
+}
+
+// A number that ends in its decimal mark, a sign or an operator is no error of somebody who is about to type on, nor is the 0
+// of a duration of 0.3, nor a size whose number follows.
+const unfinishedNumber = (field) => "bySize" in field.dataset ? /[-+*/(.,eE=:]$|;[^:;]*$/.test(field.value.trim()) : field.inputMode === "decimal" && (field.name === "t" ? /(^0|[-+*/(.,eE=])$/ : /[-+*/(.,eE=]$/).test(field.value.trim());
+
+// Neither is a phase with a torque and no speed yet, nor a move without its time.
+function unfinishedRow() {
+  const row = document.activeElement?.closest("#duty tbody tr");
+  if (!row || row.querySelector('[aria-invalid="true"]')) return false;
+  const given = (name) => row.querySelector(`[name="${name}"]`)?.value.trim();
+  const filled = (row.querySelector("select") ? [["mv"], ["mt", "ma"]] : [["T"], ["n"], ["t"]]).map((names) => names.some(given));
+  return (given("pn") || filled.includes(true)) && filled.includes(false);
+}
+
+export const isUnfinished = (field) => unfinishedNumber(field) || unfinishedRow();
+
+document.addEventListener("focusout", (event) => {
+  const row = event.target.closest("#duty tbody tr");
+  const left = row && !unfinishedNumber(event.target) ? !row.contains(event.relatedTarget) : event.target.form === formOf();
+  if (left && formOf().matches("[data-waiting]")) formOf().requestSubmit();
+});
+
+// Behind a text that ends in a unit of its own the field's unit does not stand as well.
+document.addEventListener("input", ({ target }) => target.nextElementSibling?.matches(".unit") && (target.nextElementSibling.hidden = /[a-z]$/i.test(target.value)));

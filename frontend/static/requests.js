@@ -1,0 +1,79 @@
+// Requests of the form. Typing asks for the result alone, so that nothing typed is ever overwritten; other columns, another way,
+// Back and files bring another form. Everything hangs on the document, because the form may be replaced.
+
+import { contentOf, fieldsOf, formOf, isOfForm, valueOf } from "./form.js";
+import { isUnfinished, mark, unfold } from "./messages.js";
+import { begin, isReplacing, later, typed } from "./replacing.js";
+import { arrived, note, restoring, showAddress, showSteps } from "./undo.js";
+
+const replacesForm = (ctx) => ctx?.hx?.retarget === "#application";
+
+document.addEventListener("htmx:config:request", (event) => {
+  const { ctx } = event.detail;
+  if (!isOfForm(ctx)) return;
+  const form = formOf();
+  const { submitter } = ctx.request;
+  const press = submitter?.name === "do" ? submitter : null;
+  const restores = restoring();
+  if (isReplacing() && !restores) {
+    event.preventDefault();
+    return press ? later(() => document.getElementById(press.id)?.click()) : typed();
+  }
+  if (restores) restored(ctx, restores);
+  else note();
+  const waits = !press && !restores && ctx.sourceEvent.type === "input" && isUnfinished(ctx.sourceEvent.target);
+  form.toggleAttribute("data-waiting", Boolean(waits));
+  if (waits) return event.preventDefault();
+  Object.assign(ctx, { before: restores?.before ?? fieldsOf(form), restores, asked: contentOf(form) });
+  if (press || restores) begin(ctx);
+});
+
+function restored(ctx, { content }) {
+  ctx.request.body = new FormData();
+  for (const [name, value] of new URLSearchParams(content)) ctx.request.body.append(name, value);
+  ctx.request.headers["HX-Target"] = "form#application";
+}
+
+// --- Another form: what was unfolded and typed meanwhile stays, and the focus in its cell -----------------------------
+
+document.addEventListener("htmx:before:swap", (event) => {
+  const { ctx } = event.detail;
+  if (!replacesForm(ctx)) return;
+  const form = formOf();
+  const field = document.activeElement;
+  ctx.kept = {
+    open: [...form.querySelectorAll("details[open]")].map((part) => part.id),
+    given: [...form.elements].filter((each) => ctx.before?.has(each.id) && ctx.before.get(each.id) !== valueOf(each)).map((each) => [each.id, valueOf(each)]),
+    focus: field.matches("#duty tbody :is(input, select)") && !ctx.restores ? [field.id, field.selectionStart, field.selectionEnd] : null,
+  };
+});
+
+document.addEventListener("htmx:after:swap", (event) => {
+  const { ctx } = event.detail;
+  if (!isOfForm(ctx) && !ctx?.kept) return;
+  if (ctx.kept) put(ctx);
+  else {
+    showAddress(ctx);
+    mark();
+  }
+  showSteps();
+  unfold();
+});
+
+function put(ctx) {
+  const { open, given, focus } = ctx.kept;
+  for (const id of open) document.getElementById(id)?.setAttribute("open", "");
+  arrived(ctx);
+  showAddress(ctx);
+  for (const [id, value] of given) {
+    const field = document.getElementById(id);
+    if (!field) continue;
+    field[field.type === "checkbox" ? "checked" : "value"] = value;
+    typed();
+  }
+  if (!focus) return;
+  const [id, ...range] = focus;
+  const place = document.getElementById(id);
+  place?.focus();
+  place?.setSelectionRange?.(...range);
+}
