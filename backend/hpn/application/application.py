@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from hpn.application.motion import Motion
 from hpn.application.phase import Phase
 from hpn.application.requirements import Motor, OutputLoad, Requirements
+from hpn.application.tolerances import Interval, Tolerances, intervals_of
 from hpn.words.fields import (
     MAXIMUM_PHASES,
     WHOLE,
@@ -185,6 +186,28 @@ class Application(Model):
         None, description="An area of use that needs a risk assessment and the manufacturer’s approval (handbook 2.4)."
     )
     rank_by: RankBy = Field("weight", description="Order of the suitable gears.")
+    tolerances: Tolerances | None = Field(
+        None,
+        description="How far inputs may lie from their values, by their paths: torque_Nm for that of every phase, "
+        "phases.1.torque_Nm (from 0) for one, pause_s, emergency_stop.torque_Nm, motion.mechanism.mass_kg.",
+        examples=[{"torque_Nm": {"percent": 10.0}}],
+    )
+
+    @field_validator("tolerances")
+    @classmethod
+    def _some(cls, tolerances: Tolerances | None) -> Tolerances | None:
+        return tolerances or None
+
+    @model_validator(mode="after")
+    def _bears_its_tolerances(self) -> Self:
+        if self.tolerances:
+            intervals_of(self, self.tolerances)
+        return self
+
+    @property
+    def intervals(self) -> tuple[Interval, ...]:
+        """Inputs that have a tolerance, with their ends."""
+        return intervals_of(self, self.tolerances) if self.tolerances else ()
 
     @field_validator("emergency_stop")
     @classmethod

@@ -36,8 +36,8 @@ def _fields_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -
     required = schema.get("required", ())
     for name, entry in schema["properties"].items():
         place = (*path, name)
-        if place in (("duty_cycle", "phases"), ("duty_cycle", "motion")):
-            continue  # the fields of a phase stand by themselves
+        if place in (("duty_cycle", "phases"), ("duty_cycle", "motion"), ("tolerances",)):
+            continue  # the fields of a phase stand by themselves, and a tolerance by the path of its input
         shape = _resolved(entry, definitions)
         if "properties" in shape:
             yield from _fields_below(shape, definitions, place)

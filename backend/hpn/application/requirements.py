@@ -151,6 +151,14 @@ class Requirements(Model):
     utilisation: Share = Field(
         1.0, description="Maximum utilisation u of the load checks: your own reserve.", examples=[1.0]
     )
+    worst_case_utilisation: Share | None = Field(
+        None,
+        description="Maximum utilisation of the load checks in the worst case of the tolerances; by default u.",
+        examples=[1.0],
+    )
+    over_tolerance: Annotated[bool, Field(strict=True)] = Field(
+        False, description="True: the worst case of the tolerances judges and ranks the gears.", examples=[False]
+    )
     efficiency: Share | None = Field(
         None, description="Your assumption for the gear’s efficiency; without it the motor side is loss-free."
     )

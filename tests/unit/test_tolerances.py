@@ -1,0 +1,87 @@
+"""Tolerances of an application: which inputs take one, and every point of the box an application."""
+
+import pytest
+from pydantic import ValidationError
+
+from hpn.application import Application
+from hpn.application.faults import faults_of
+from tests.build import TURNING, Json, cycle, phase, worked_example
+
+VARYING = cycle(phase(40, 250, 1, peak_torque_Nm=60, rms_torque_Nm=50), phase(0, 100), pause_s=1)
+
+
+def faults(application: Json, tolerances: Json) -> list[tuple[str, str]]:
+    with pytest.raises(ValidationError) as refused:
+        Application.model_validate(application | {"tolerances": tolerances})
+    return [(str(fault.location[1]), fault.code) for fault in faults_of(refused.value)]
+
+
+@pytest.mark.parametrize(
+    ("path", "code"),
+    [
+        ("torque", "tolerance_path"),
+        ("requirements.utilisation", "tolerance_path"),
+        ("duty_cycle.pause_s", "tolerance_path"),
+        ("phases.9.torque_Nm", "tolerance_path"),
+        ("requirements.ratios", "tolerance_path"),
+        ("requirements.life_h", "tolerance_of_nothing"),
+        ("requirements.motor.inertia_kgm2", "tolerance_of_nothing"),
+        ("motion.mechanism.mass_kg", "tolerance_of_nothing"),
+    ],
+)
+def test_a_path_that_names_no_given_number_is_an_error_there(path: str, code: str) -> None:
+    assert faults(worked_example(), {path: {"percent": 1}}) == [(path, code)]
+
+
+def test_a_path_for_all_phases_skips_those_without_a_value_and_one_of_a_phase_goes_before() -> None:
+    tolerances = {"torque_Nm": {"percent": 10}, "phases.0.torque_Nm": {"absolute": 1}, "radial_N": {"percent": 5}}
+    found = Application.model_validate(VARYING | {"tolerances": tolerances}).intervals
+
+    assert [(one.place, one.low, one.high) for one in found] == [(("phases", 0, "torque_Nm"), 39, 41)]
+
+
+def test_an_input_of_0_takes_no_tolerance_of_its_own() -> None:
+    assert faults(VARYING, {"phases.1.torque_Nm": {"absolute": 1}}) == [("phases.1.torque_Nm", "tolerance_of_nothing")]
+
+
+@pytest.mark.parametrize("path", ["speed_rpm", "duration_s", "pause_s"])
+def test_speed_and_times_keep_their_sign(path: str) -> None:
+    assert faults(worked_example(), {path: {"percent": 100}}) == [(path, "tolerance_sign")]
+    Application.model_validate(worked_example(tolerances={path: {"percent": 99.9}}))
+
+
+def test_torque_may_cross_0_and_bounds_hold_at_both_ends() -> None:
+    (first, *_) = Application.model_validate(worked_example(tolerances={"torque_Nm": {"percent": 150}})).intervals
+
+    assert (first.low, first.high) == (-20, 100)
+    assert faults(worked_example(), {"torque_Nm": {"absolute": 1e6}}) == [("torque_Nm", "tolerance_most")]
+
+
+def test_a_peak_with_a_tolerance_of_its_own_stays_above_its_torque() -> None:
+    tolerances = {"phases.0.peak_torque_Nm": {"percent": 30}, "torque_Nm": {"percent": 10}}
+    assert faults(VARYING, tolerances)[0] == ("phases.0.peak_torque_Nm", "tolerance_held")
+    Application.model_validate(VARYING | {"tolerances": {"phases.0.peak_torque_Nm": {"percent": 10}}})
+
+
+WRONG = [{}, {"percent": 1, "absolute": 1}, {"percent": 1, "plus": {"percent": 1}}, {"percent": -1}]
+
+
+@pytest.mark.parametrize("tolerance", WRONG)
+def test_a_tolerance_is_given_in_one_way(tolerance: Json) -> None:
+    assert faults(worked_example(), {"torque_Nm": tolerance})[0][0] == "torque_Nm"
+
+
+def test_there_are_50_at_most_and_null_is_none() -> None:
+    many = {f"phases.{k}.torque_Nm": {"percent": 1} for k in range(51)}
+    with pytest.raises(ValidationError, match="50"):
+        Application.model_validate(cycle(*(phase(40, 250) for _ in range(60)), tolerances=many))
+    for nothing in (None, {}, {"torque_Nm": None}):
+        assert Application.model_validate(worked_example(tolerances=nothing)).tolerances is None
+
+
+def test_a_motion_takes_tolerances_of_mechanism_and_moves_alone() -> None:
+    motion = {"duty_cycle": {"motion": TURNING}}
+    assert faults(motion, {"torque_Nm": {"percent": 1}}) == [("torque_Nm", "tolerance_of_motion")]
+    assert Application.model_validate(
+        motion | {"tolerances": {"motion.mechanism.inertia_kgm2": {"percent": 5}}}
+    ).intervals
