@@ -110,7 +110,7 @@ def test_the_expected_number_of_stops_may_be_the_allowed_number_and_no_more(cata
 def test_every_requirement_is_checked_or_enters_what_is_checked() -> None:
     asked = {check.asked for check in CHECKS} | {check.instead for check in CHECKS}
     entering = {"utilisation", "efficiency", "load_inertia_kgm2", "motor.inertia_kgm2", "position_radius_mm"}
-    entering |= {"rest_friction_Nm"}
+    entering |= {"rest_friction_Nm", "worst_case_utilisation"}
     wanted = {".".join(path) for path in NUMBERS if path[0] == "requirements"}
 
     assert wanted - asked == {f"requirements.{name}" for name in entering}

@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.evaluation import Evaluation
-from hpn.engine.selection import CheckDefinition, Judged, Selection, judge, select
+from hpn.engine.selection import CheckDefinition, Judged, Outcome, Selection, judge, select
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
@@ -127,10 +127,10 @@ def test_printed_curves_that_nobody_supplied_are_refused_where_they_are_asked_fo
 def test_the_answer_in_brief_is_that_of_the_first_suitable_gear(catalogue: Catalogue) -> None:
     fits, fails = (Application.model_validate(cycle(phase(T, 100), requirements=ONLY)) for T in (40, 160))
 
-    selected, governing_check, utilisation, suitable = judge(fits, catalogue).outcome()
-    assert (selected, governing_check, suitable) == ("HPN-20A-5", "average_torque", 1)
-    assert utilisation == pytest.approx(0.5, rel=1e-12)
-    assert judge(fails, catalogue).outcome() == (None, None, None, 0)
+    brief = judge(fits, catalogue).outcome()
+    assert (brief.selected, brief.governing_check, brief.suitable) == ("HPN-20A-5", "average_torque", 1)
+    assert brief.utilisation == pytest.approx(0.5, rel=1e-12)
+    assert judge(fails, catalogue).outcome() == Outcome(None, None, None, 0)
     assert [judge(one, catalogue).selection().selected for one in (fits, fails)] == ["HPN-20A-5", None]
     assert judge(fits, catalogue).selection().link == ""
 

@@ -13,6 +13,7 @@ from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import evaluate
 from hpn.engine.selection import Judged
+from hpn.engine.tolerance import with_worst
 
 Answer = TypeVar("Answer")
 
@@ -63,6 +64,7 @@ def judge_batch(
         for chunk in chunks_of([len(applications[index].duty_cycle.load_phases) for index in indices]):
             members = [indices[place] for place in chunk.tolist()]
             evaluation = evaluate(Duty.of([equipped[index] for index in members]), gears, catalogue)
+            evaluation = with_worst([applications[index] for index in members], evaluation)
             for place, index in enumerate(members):
                 results[index] = answer(Judged(applications[index], evaluation, place))
     return [result for result in results if result is not None]

@@ -1,11 +1,12 @@
 """Candidates: the gears as the reply has them, each with its figures, its checks and a reason."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice, repeat
 from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
+from msgspec import UNSET, UnsetType
 from pydantic import Field
 
 from hpn.engine.checks import BY_CODE, allowed
@@ -18,6 +19,7 @@ from hpn.engine.evaluation import (
     Evaluation,
     PlaceArray,
     Status,
+    Worst,
 )
 from hpn.engine.reserve import reserves
 from hpn.physics.equations import FloatArray
@@ -39,6 +41,20 @@ class CheckResult(Reply, frozen=True):
     utilisation: float | None
     status: CheckStatus
     at_least: float | None = None
+    worst: (
+        Annotated[float | None, Field(description="Utilisation in the worst case of the tolerances.")] | UnsetType
+    ) = UNSET
+    exact: (
+        Annotated[bool, Field(description="True: nothing inside the tolerances is worse. False: sampled.")] | UnsetType
+    ) = UNSET
+
+
+class WorstCase(Reply, frozen=True):
+    """Verdict on one gear in the worst case of the tolerances."""
+
+    utilisation: Annotated[float | None, Field(description="Largest utilisation that counts.")]
+    governing_check: Annotated[str | None, Field(description="Check that has it.")]
+    status: Annotated[Status, Field(description="Status by the worst cases of all checks.")]
 
 
 class Reserve(Reply, frozen=True):
@@ -96,6 +112,7 @@ class Candidate(Reply, frozen=True):
     motor_lock_speed_rpm: float | None = None
     reserve: Reserve = Reserve()
     checks: Annotated[tuple[CheckResult, ...], Field(min_length=1)] = ()
+    worst: Annotated[WorstCase, Field(description="Worst case of the tolerances, if given.")] | UnsetType = UNSET
 
     def says(self, figure: str) -> bool:
         """False for a figure that the version of a saved answer did not know; None is then no value of it."""
@@ -164,7 +181,7 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     codes = [check.code for check in evaluation.checks]
     u = evaluation.case.asked["requirements.utilisation"].item(index)
     figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
-    tables = (evaluation.demand, evaluation.limit, evaluation.used)
+    tables = (evaluation.demand, evaluation.limit, evaluation.shown)
     terms = (table[place, index] for place in asked for table in tables)
     columns = iter(
         _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
@@ -174,6 +191,7 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     states = [map(CHECK_STATUS.__getitem__, row) for row in evaluation.status[asked, index][:, order].tolist()]
     lacks, bounded = evaluation.lacks_input[index].tolist(), bool(np.isfinite(evaluation.at_least[:, index]).any())
     limits = np.select([lacks, evaluation.by_lower_bound[index]], ["missing", "at_least"], "").tolist()
+    worst = evaluation.worst if evaluation.worst is not None and evaluation.worst.given[index] else None
     checks = [
         map(
             CheckResult,
@@ -182,15 +200,17 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
             next(columns),
             next(columns),
             state,
-            *(_columns([evaluation.at_least[place, index]], order) if bounded else ()),
+            *(_columns([evaluation.at_least[place, index]], order) if bounded or worst else ()),
+            *(_worst_of(worst, place, index, order) if worst else ()),
         )
         for place, state in zip(asked, states, strict=True)
     ]
+    cases: Iterable[WorstCase | UnsetType] = _worst_cases(worst, index, order) if worst else repeat(UNSET)
     rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)
     verdicts, governs = evaluation.verdict[index].tolist(), evaluation.governing[index].tolist()
     lives = evaluation.case.figures.shortest_life_of[index].tolist()
-    for place, (gear, (utilisation, numbers, own_reserve, results)) in enumerate(
-        zip(order.tolist(), rows, strict=True)
+    for place, (gear, (utilisation, numbers, own_reserve, results), case) in enumerate(
+        zip(order.tolist(), rows, cases, strict=False)
     ):
         verdict = verdicts[gear]
         governing = None if verdict == UNRATED else codes[governs[gear]]
@@ -211,7 +231,24 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
             shortest_life_of=lives[gear] or None,
             reserve=own_reserve,
             checks=results,
+            worst=case,
         )
+
+
+def _worst_of(worst: Worst, place: int, index: int, order: PlaceArray) -> tuple[list[float | None], list[bool]]:
+    """Worst utilisation of a check on the gears in an order, and whether it is proved."""
+    return _columns([worst.evaluation.used[place, index]], order)[0], worst.exact[place, index, order].tolist()
+
+
+def _worst_cases(worst: Worst, index: int, order: PlaceArray) -> list[WorstCase]:
+    """Verdicts on the gears in an order by their worst cases."""
+    judged = worst.evaluation
+    (used,) = _columns([judged.utilisation[index]], order)
+    verdicts, governs = judged.verdict[index, order].tolist(), judged.governing[index, order].tolist()
+    codes = [
+        None if verdict == UNRATED else judged.checks[at].code for verdict, at in zip(verdicts, governs, strict=True)
+    ]
+    return [WorstCase(each, code, STATUS[verdict]) for each, code, verdict in zip(used, codes, verdicts, strict=True)]
 
 
 def _columns(values: Sequence[FloatArray], order: PlaceArray) -> list[list[float | None]]:

@@ -4,6 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hpn.catalogue import GearColumns
 from hpn.engine.duty import Asked, Duty
 from hpn.engine.figures import Figures
@@ -38,6 +41,10 @@ class Case:
 
 Values = Callable[[Case], FloatArray]
 
+Dependence = Literal["rising", "falling", "ends", "weight", "unproven"]
+"""How a utilisation depends on one input while the others stay: it rises or falls with it, or is largest at one of its
+ends; `weight`: the input is a factor of the weights w of a share Σ w d / (Σ w + c); unproven: in no such way."""
+
 
 @dataclass(frozen=True)
 class Check:
@@ -50,6 +57,11 @@ class Check:
     is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power with which the
     utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass where none of
     them moves it, or none in closed form.
+
+    `over` says of each input that the utilisation depends on how it does, an input by its path, of a phase by its
+    field, and of a motion with fixed times and speeds by `motion`; None: nothing is proven of it. Where inputs are
+    weights, `weighted` gives the d of each phase, shape (N, groups of gears, phases), and c is the pause where the
+    utilisation depends on it. `proven` is False where that doesn't hold, broadcasting to (N, G).
     """
 
     code: str
@@ -75,6 +87,9 @@ class Check:
     limited_by: str | None = None
     moves: Mapping[Driver, float] = field(default_factory=dict)
     accepted: str = ""
+    over: Mapping[str, Dependence] | None = None
+    weighted: Values | None = None
+    proven: Callable[[Case], NDArray[np.bool_]] | None = None
 
     def limit_of(self, case: Case) -> FloatArray:
         """Limit in the unit of the check; broadcasts to (N, G), NaN where it is not published or not asked."""

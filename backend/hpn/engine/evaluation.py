@@ -1,7 +1,7 @@
 """Checks of applications on gears, the verdicts that follow from them, and the order of the candidates."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -47,7 +47,7 @@ class Evaluation:
     `asked` (C, N, 1). `used` (C, N, G) is the utilisation of each check, NaN where it is not rated or not asked for,
     infinite where the check fails without a number; it passes up to `bound` (C, N, 1). `verdict` (N, G) is a place in
     STATUS; `utilisation` (N, G) the largest of the load checks and of the property checks that fail, NaN for an unrated
-    gear.
+    gear. `worst` are the worst cases where an application has tolerances.
     """
 
     case: Case
@@ -59,6 +59,12 @@ class Evaluation:
     bound: FloatArray
     verdict: NDArray[np.int8]
     utilisation: FloatArray
+    worst: "Worst | None" = None
+
+    @property
+    def shown(self) -> FloatArray:
+        """Utilisations of the applications as they are given, shape (C, N, G), whatever judges the gears."""
+        return self.used if self.worst is None else self.worst.nominal
 
     def asked_by(self, index: int) -> list[int]:
         """Places in `checks` of those that application `index` asks for."""
@@ -187,6 +193,27 @@ class Evaluation:
     def _ties(self) -> tuple[FloatArray, ...]:
         gears = self.case.gears
         return gears.weight_kg, self.utilisation, -self.case.figures.life_L10_h, gears.ratio
+
+
+@dataclass(frozen=True, eq=False)
+class Worst:
+    """Worst cases of N applications over their tolerances, in the form of an evaluation.
+
+    `exact` (C, N, G) says of which checks they are proved, `given` (N,) which applications have tolerances; the others
+    stay as they are. `nominal` (C, N, G) are the utilisations as given.
+    """
+
+    evaluation: Evaluation
+    exact: BoolArray
+    given: BoolArray
+    nominal: FloatArray
+
+
+def judged_by(evaluation: Evaluation, used: FloatArray, bound: FloatArray) -> Evaluation:
+    """The evaluation with other utilisations of its checks, and the bounds that they keep."""
+    with np.errstate(all="ignore"):
+        verdict, utilisation = _verdicts(evaluation.asked, used, bound, _load_checks(evaluation.checks))
+    return replace(evaluation, used=used, bound=bound, verdict=verdict, utilisation=utilisation)
 
 
 def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:

@@ -3,6 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hpn.catalogue import Catalogue, GearColumns, GearList
 from hpn.catalogue.gear import Gear
@@ -10,6 +11,8 @@ from hpn.engine.duty import Duty
 from hpn.physics import equations
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, motor_torques
+
+BoolArray = NDArray[np.bool_]
 
 
 def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
@@ -23,22 +26,10 @@ def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple
     eta = np.where(np.isnan(stated), 1.0, stated)
     peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
     rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
-    peaks, squares, unstated = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0], np.isnan(stated)[:, 0]
-    curved = {place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency}
-    without_load = np.nan_to_num(gears.columns.no_load_torque_Nm)
-    for place in sorted((curved if unstated.any() else set()) | set(np.flatnonzero(without_load).tolist())):
-        gear, own = gears.rows[place], unstated & (place in curved)
-        moving = np.where(duty.phases.speed_rpm[:, 0] > 0, without_load[place], 0.0)
-        some = own | bool(without_load[place])
-        at_peak, at_rms = (
-            equations.motor_torque(
-                output_torque_Nm=T,
-                ratio=gear.ratio,
-                efficiency=np.where(own[:, None], efficiency_at(T, gear, catalogue), eta) if own.any() else eta,
-            )
-            + moving
-            for T in (peaks, squares)
-        )
+    peaks, squares = duty.phases.peak_torque_Nm[:, 0], duty.phases.rms_torque_Nm[:, 0]
+    for place in _apart(duty, gears, catalogue):
+        own, some = _by_curve(duty, place, gears, catalogue)
+        at_peak, at_rms = (_at_motor(T, duty, place, own, gears, catalogue) for T in (peaks, squares))
         rms = equations.rms_torque(
             torque_Nm=at_rms,
             duration_s=duty.phases.duration_s[:, 0],
@@ -50,6 +41,51 @@ def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple
         if not np.isnan(inertia):
             peak[index], rated[index] = _with_own_inertia(duty, index, course, inertia, gears, catalogue)
     return peak, rated
+
+
+def torques_by_phase(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
+    """RMS torque at the motor in each phase, its own inertia left out, shape (N, G, phases).
+
+    Of all gears alike, shape (N, 1, phases), but for a factor, where no gear has figures of its own.
+    """
+    T = duty.phases.rms_torque_Nm
+    apart = _apart(duty, gears, catalogue)
+    if not apart:
+        return T
+    stated = duty.asked["requirements.efficiency"][..., None]
+    eta = np.where(np.isnan(stated), 1.0, stated)
+    torque = equations.motor_torque(output_torque_Nm=T, ratio=gears.columns.ratio[:, None], efficiency=eta)
+    for place in apart:
+        own, some = _by_curve(duty, place, gears, catalogue)
+        torque[some, place] = _at_motor(T[:, 0], duty, place, own, gears, catalogue)[some]
+    return torque
+
+
+def _apart(duty: Duty, gears: GearList, catalogue: Catalogue) -> list[int]:
+    """Places of gears whose torque at the motor goes by a curve, or has their torque without load in it."""
+    unstated = bool(np.isnan(duty.asked["requirements.efficiency"]).any())
+    curved = [place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency]
+    without_load = np.nan_to_num(gears.columns.no_load_torque_Nm)
+    return sorted({*(curved if unstated else ()), *np.flatnonzero(without_load).tolist()})
+
+
+def _by_curve(duty: Duty, place: int, gears: GearList, catalogue: Catalogue) -> tuple[BoolArray, BoolArray]:
+    """True for applications in which a gear goes by its curve, and in which its figures count, shape (N,)."""
+    unstated = np.isnan(duty.asked["requirements.efficiency"])[:, 0]
+    own = unstated & (gears.rows[place].designation in catalogue.efficiency)
+    return own, own | bool(np.nan_to_num(gears.columns.no_load_torque_Nm)[place])
+
+
+def _at_motor(
+    torque_Nm: FloatArray, duty: Duty, place: int, own: BoolArray, gears: GearList, catalogue: Catalogue
+) -> FloatArray:
+    """Torque at the motor for torques of the phases at one gear, shape (N, phases)."""
+    gear, stated = gears.rows[place], duty.asked["requirements.efficiency"]
+    eta = np.where(np.isnan(stated), 1.0, stated)
+    if own.any():
+        eta = np.where(own[:, None], efficiency_at(torque_Nm, gear, catalogue), eta)
+    moving = np.where(duty.phases.speed_rpm[:, 0] > 0, np.nan_to_num(gears.columns.no_load_torque_Nm)[place], 0.0)
+    return equations.motor_torque(output_torque_Nm=torque_Nm, ratio=gear.ratio, efficiency=eta) + moving
 
 
 def _with_own_inertia(

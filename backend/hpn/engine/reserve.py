@@ -71,7 +71,7 @@ def _factor(evaluation: Evaluation, index: int, driver: Driver, u: float) -> Flo
         room if power == 1 else room ** (1 / power)
         for place, check in enumerate(evaluation.checks)
         if (power := check.moves.get(driver)) and evaluation.asked.item(place, index, 0)
-        for used in (evaluation.used[place, index],)
+        for used in (evaluation.shown[place, index],)
         for room in (u / (np.where(unknown[index], np.nan, used) if check.at_least else used),)
     ]
     return np.minimum.reduce(rooms) if rooms else np.array(np.nan)

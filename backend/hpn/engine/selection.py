@@ -3,11 +3,14 @@
 A `Selection` is the reply: what the API encodes as JSON, what pages and files read, what a saved reply decodes to.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from math import isfinite
 from typing import Annotated, NamedTuple
 
 import msgspec
+from msgspec import UNSET, UnsetType
 from pydantic import Field
 
 from hpn import ENGINE_VERSION
@@ -18,9 +21,11 @@ from hpn.engine.candidates import Candidate, candidates_of
 from hpn.engine.check import Check, Group, Kind
 from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.duty import Duty
-from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
+from hpn.engine.evaluation import SUITABLE, UNRATED, Evaluation, evaluate
 from hpn.engine.notice import Notice
 from hpn.engine.notices import ADDED_AT_MOTOR, notices_of
+from hpn.engine.room import Room, room_of
+from hpn.engine.tolerance import with_worst
 from hpn.words.quantities import DUTY, PHASE
 from hpn.words.reply import Reply, described
 
@@ -93,6 +98,13 @@ class Selection(Reply, frozen=True):
     candidates: Annotated[tuple[Candidate, ...], Field(min_length=1, description="Every gear considered, best first.")]
     check_definitions: Annotated[dict[str, CheckDefinition], Field(description="Definitions by check code.")]
     notices: Annotated[tuple[Notice, ...], Field(description="Assumptions and remarks.")]
+    tolerance: (
+        Annotated[
+            Room | None,
+            Field(description="The selected gear over the tolerances, if given; null where none is selected."),
+        ]
+        | UnsetType
+    ) = UNSET
 
     @property
     def foremost(self) -> Candidate:
@@ -119,12 +131,18 @@ encode = msgspec.json.Encoder().encode
 
 
 class Outcome(NamedTuple):
-    """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable."""
+    """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable.
+
+    `holds` and the worst case are those of the selected gear over the tolerances, UNSET without any.
+    """
 
     selected: str | None
     governing_check: str | None
     utilisation: float | None
     suitable: int
+    holds: bool | UnsetType | None = UNSET
+    worst_utilisation: float | UnsetType | None = UNSET
+    worst_governing_check: str | UnsetType | None = UNSET
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,27 +158,47 @@ class Judged:
         evaluation, index = self.evaluation, self.index
         suitable = int((evaluation.verdict[index] == SUITABLE).sum())
         if not suitable:
-            return Outcome(None, None, None, 0)
+            return Outcome(None, None, None, 0, *((None,) * 3 if self.application.tolerances else ()))
         best = evaluation.order.item(index, 0)
         check = evaluation.checks[evaluation.governing.item(index, best)]
         used = evaluation.utilisation.item(index, best)
-        return Outcome(evaluation.gears.rows[best].designation, check.code, used, suitable)
+        worst = self._worst(best) if self.application.tolerances else ()
+        return Outcome(evaluation.gears.rows[best].designation, check.code, used, suitable, *worst)
 
-    def selection(self, link: str = "") -> Selection:
-        """The answer in full."""
+    def _worst(self, gear: int) -> tuple[bool, float | None, str | None]:
+        """True where a gear holds over the whole tolerance, and its worst case."""
+        assert self.evaluation.worst is not None
+        judged, index = self.evaluation.worst.evaluation, self.index
+        used, verdict = judged.utilisation.item(index, gear), judged.verdict.item(index, gear)
+        code = None if verdict == UNRATED else judged.checks[judged.governing.item(index, gear)].code
+        return verdict == SUITABLE, used if isfinite(used) else None, code
+
+    def selection(self, link_of: Callable[[Application], str] | None = None, samples: int = 0) -> Selection:
+        """The answer in full, with the links that a function gives and a share of so many points of the tolerances."""
         evaluation, index = self.evaluation, self.index
         candidates = tuple(candidates_of(evaluation, index))
         checks = tuple(evaluation.checks[place].code for place in evaluation.asked_by(index))
         return Selection(
             engine_version=ENGINE_VERSION,
             catalogue_version=evaluation.catalogue.version,
-            link=link,
+            link=link_of(self.application) if link_of else "",
             duty=_duty(self.application, evaluation, index),
             selected=candidates[0].designation if candidates[0].status == "suitable" else None,
             candidates=candidates,
             check_definitions=dict(_definitions(checks)),
             notices=notices_of(self.application, evaluation, index),
+            tolerance=self._room(candidates[0], link_of or (lambda _: ""), samples),
         )
+
+    def _room(self, first: Candidate, link_of: Callable[[Application], str], samples: int) -> Room | UnsetType | None:
+        """Room of the selected gear over the tolerances."""
+        if not self.application.tolerances:
+            return UNSET
+        if first.status != "suitable":
+            return None
+        catalogue = self.evaluation.catalogue
+        gear, equipped = catalogue.by_designation[first.designation], with_listed_motor(self.application, catalogue)
+        return room_of(self.application, equipped, gear, catalogue, link_of, samples)
 
     def left_out(self) -> tuple[Candidate, ...]:
         """Candidates that the ratios and sizes asked for leave out, judged alike and without rank.
@@ -173,19 +211,24 @@ class Judged:
         return tuple(msgspec.structs.replace(candidate, rank=None) for candidate in found)
 
 
-def select(application: Application, catalogue: Catalogue, link: str = "") -> Selection:
-    """Evaluate every gear that the application allows, and rank them.
+def select(
+    application: Application,
+    catalogue: Catalogue,
+    link_of: Callable[[Application], str] | None = None,
+    samples: int = 0,
+) -> Selection:
+    """Evaluate every gear that the application allows, and rank them; the reply has the links that a function gives.
 
     Raises InputError for a ratio or size that the catalogue lacks, for a combination that leaves no gear, and for the
     digitised bearing model where no candidate has curve points.
     """
-    return judge(application, catalogue).selection(link)
+    return judge(application, catalogue).selection(link_of, samples)
 
 
 def judge(application: Application, catalogue: Catalogue) -> Judged:
     """Evaluation of an application before the reply is put together; raises as `select` does."""
     gears, equipped = gears_for(application, catalogue), with_listed_motor(application, catalogue)
-    return Judged(application, evaluate(Duty.of([equipped]), gears, catalogue))
+    return Judged(application, with_worst([application], evaluate(Duty.of([equipped]), gears, catalogue)))
 
 
 def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyFigures:

@@ -8,6 +8,7 @@ from typing import Any, overload
 from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop, Requirements
 from hpn.application.motion import Motion
 from hpn.application.phase import Phase
+from hpn.application.tolerances import Tolerances
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.candidates import Candidate
@@ -25,6 +26,8 @@ def needed_of(candidate: Candidate, application: Application, catalogue: Catalog
     Less torque may mend a position error, and less inertia an inertia ratio, which then need no change of their own. A
     length that is asked for is answered as one. Those with the fewest changes come first.
     """
+    if application.requirements.over_tolerance and application.tolerances:
+        return ()  # they are of the values as given
     asked, gears = application.requirements, catalogue.listed([catalogue.by_designation[candidate.designation]])
     found = []
     for proposed in alternatives_of(candidate, asked.utilisation):
@@ -110,6 +113,8 @@ def followed(application: Application, way: Way) -> Application:
         else:
             parts["requirements"] = asked.model_copy(update=_of_motion(cycle, cycle.motion, asked, torque))
             stop = stop and _pulled(stop, cycle.motion)
+    if cycle.motion is not None and parts["duty_cycle"].motion is None:
+        parts["tolerances"] = _without_motion(application.tolerances)
     if (given := application.output_load) is not None:
         loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
         loads |= {"from_motion": given.from_motion and parts["duty_cycle"].motion is not None}
@@ -117,6 +122,11 @@ def followed(application: Application, way: Way) -> Application:
     if stop is not None:
         parts["emergency_stop"] = _stopped(stop, way)
     return application.model_copy(update=parts)
+
+
+def _without_motion(tolerances: Tolerances | None) -> Tolerances | None:
+    """Tolerances without those of a motion that phases take the place of."""
+    return {path: one for path, one in (tolerances or {}).items() if not path.startswith("motion.")} or None
 
 
 def _of_motion(cycle: DutyCycle, motion: Motion, asked: Requirements, torque: float) -> dict[str, float | bool]:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from hpn.engine.check import RATING_TABLES, Case, Check
+from hpn.engine.checks.dependence import AVERAGE_SPEED, STOP, holds_load
 from hpn.physics import equations
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
@@ -49,6 +50,8 @@ GEAR: tuple[Check, ...] = (
         limited_by="rated_torque_Nm",
         relation="T_av ≤ T_A = T_N",
         moves={"torque": 1.0},
+        over={"torque_Nm": "rising", "speed_rpm": "weight", "duration_s": "weight", "motion": "ends"},
+        weighted=lambda c: equations.power_ten_thirds(c.duty.phases.torque_Nm),
     ),
     Check(
         code="repeated_peak_torque",
@@ -74,6 +77,7 @@ GEAR: tuple[Check, ...] = (
         limited_by="repeated_peak_torque_Nm",
         relation="T_max ≤ T_R",
         moves={"torque": 1.0},
+        over={"peak_torque_Nm": "rising", "motion": "ends"},
     ),
     Check(
         code="momentary_peak_torque",
@@ -96,6 +100,8 @@ GEAR: tuple[Check, ...] = (
         share=_share_of_peak,
         limited_by="momentary_peak_torque_Nm",
         relation="T_k ≤ T_M",
+        over=STOP,
+        proven=holds_load,
     ),
     Check(
         code="momentary_peak_count",
@@ -120,6 +126,8 @@ GEAR: tuple[Check, ...] = (
         share=_share_of_stops,
         limited_by="repeated_peak_torque_Nm",
         relation="N_k ≤ N_k,max",
+        over=STOP,
+        proven=holds_load,
     ),
     Check(
         code="average_input_speed",
@@ -143,6 +151,8 @@ GEAR: tuple[Check, ...] = (
         limited_by="average_input_speed_rpm",
         relation="n_in,av ≤ n_av(max)",
         moves={"speed": 1.0},
+        over=AVERAGE_SPEED,
+        weighted=lambda c: c.duty.phases.speed_rpm,
     ),
     Check(
         code="maximum_input_speed",
@@ -166,6 +176,7 @@ GEAR: tuple[Check, ...] = (
         limited_by="maximum_input_speed_rpm",
         relation="n_in,max ≤ n_in(max)",
         moves={"speed": 1.0},
+        over={"peak_speed_rpm": "rising", "motion": "ends"},
     ),
     Check(
         code="life",
@@ -190,5 +201,7 @@ GEAR: tuple[Check, ...] = (
         limited_by="rated_torque_Nm",
         relation="L_10 ≥ L_10,req",
         moves={"torque": 10 / 3, "speed": 1.0},
+        over={**AVERAGE_SPEED, "torque_Nm": "rising", "requirements.life_h": "rising"},
+        weighted=lambda c: c.duty.phases.speed_rpm * equations.power_ten_thirds(c.duty.phases.torque_Nm),
     ),
 )

@@ -1,6 +1,7 @@
 """Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
 
 from hpn.engine.check import Check
+from hpn.engine.checks.dependence import AVERAGE_SPEED, follows_rms, follows_torque, square_torques
 from hpn.engine.motor_torques import inertia_ratio
 from hpn.words.wording import N_
 
@@ -24,6 +25,7 @@ MOTOR: tuple[Check, ...] = (
         relation="n_in,max ≤ n_mot",
         moves={"speed": 1.0},
         accepted=N_("the motor’s maximum speed rises to {value}"),
+        over={"peak_speed_rpm": "rising", "requirements.motor.maximum_speed_rpm": "falling", "motion": "ends"},
     ),
     Check(
         code="motor_peak_torque",
@@ -51,6 +53,13 @@ MOTOR: tuple[Check, ...] = (
         relation="T_max / (i · η) ≤ T_mot",
         moves={"torque": 1.0},
         accepted=N_("the motor’s peak torque rises to {value}"),
+        over={
+            "peak_torque_Nm": "rising",
+            "requirements.efficiency": "falling",
+            "requirements.motor.peak_torque_Nm": "falling",
+            "motion": "ends",
+        },
+        proven=follows_torque,
     ),
     Check(
         code="motor_rated_torque",
@@ -78,6 +87,16 @@ MOTOR: tuple[Check, ...] = (
         relation="T_rms / (i · η) ≤ T_mot,N",
         moves={"torque": 1.0},
         accepted=N_("the motor’s rated torque rises to {value}"),
+        over={
+            "rms_torque_Nm": "rising",
+            "duration_s": "weight",
+            "duty_cycle.pause_s": "falling",
+            "requirements.efficiency": "falling",
+            "requirements.motor.rated_torque_Nm": "falling",
+            "motion": "ends",
+        },
+        weighted=square_torques,
+        proven=follows_rms,
     ),
     Check(
         code="motor_rated_speed",
@@ -98,6 +117,8 @@ MOTOR: tuple[Check, ...] = (
         relation="n_in,av ≤ n_mot,N",
         moves={"speed": 1.0},
         accepted=N_("the motor’s rated speed rises to {value}"),
+        over={**AVERAGE_SPEED, "requirements.motor.rated_speed_rpm": "falling"},
+        weighted=lambda c: c.duty.phases.speed_rpm,
     ),
     Check(
         code="inertia_ratio",
@@ -119,5 +140,11 @@ MOTOR: tuple[Check, ...] = (
         demand=lambda c: inertia_ratio(c.duty, c.gears, c.asked["requirements.motor.inertia_kgm2"]),
         relation="(J_L / i² + J_g) / J_m ≤ r_J",
         accepted=N_("the permitted inertia ratio rises to {value}"),
+        over={
+            "requirements.load_inertia_kgm2": "rising",
+            "requirements.motor.inertia_kgm2": "falling",
+            "requirements.motor.inertia_ratio": "falling",
+            "motion": "ends",
+        },
     ),
 )

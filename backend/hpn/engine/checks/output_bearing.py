@@ -3,6 +3,7 @@
 import numpy as np
 
 from hpn.engine.check import Case, Check
+from hpn.engine.checks.dependence import AVERAGE_SPEED, BEARING, bearing_damages, has_rising_curves
 from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.words.wording import N_
 
@@ -43,6 +44,8 @@ OUTPUT_BEARING: tuple[Check, ...] = (
         limited_by="dynamic_radial_load_N",
         relation="max f_w · P_i ≤ 1",
         moves={"load": 1.0},
+        over=BEARING,
+        proven=has_rising_curves,
     ),
     Check(
         code="output_bearing_life",
@@ -72,5 +75,8 @@ OUTPUT_BEARING: tuple[Check, ...] = (
         limited_by="dynamic_radial_load_N",
         relation="f_w · P_m ≤ k",
         moves={"speed": 1 / 3, "load": 1.0},
+        over={**BEARING, **AVERAGE_SPEED, "output_load.life_h": "rising"},
+        weighted=bearing_damages,
+        proven=has_rising_curves,
     ),
 )

@@ -60,6 +60,7 @@ PROPERTIES: tuple[Check, ...] = (
         share=_distance_from_middle,
         limited_by="ambient_temperature_maximum_degC",
         relation="t_min ≤ t_amb ≤ t_max",
+        over={"requirements.ambient_temperature_degC": "ends"},
     ),
     Check(
         code="backlash",
@@ -79,6 +80,7 @@ PROPERTIES: tuple[Check, ...] = (
         limited_by="backlash_arcmin",
         relation="j ≤ j_req",
         accepted=N_("the backlash limit rises to {value}"),
+        over={"requirements.backlash_arcmin": "falling"},
     ),
     Check(
         code="torsional_stiffness",
@@ -98,6 +100,7 @@ PROPERTIES: tuple[Check, ...] = (
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="K_3 ≥ K_3,req",
         accepted=N_("the required torsional stiffness drops to {value}"),
+        over={"requirements.torsional_stiffness_Nm_per_rad": "rising"},
     ),
     Check(
         code="natural_frequency",
@@ -120,6 +123,11 @@ PROPERTIES: tuple[Check, ...] = (
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="√(K_3 / J_L) / 2π ≥ f_req",
         accepted=N_("the required natural frequency drops to {value}"),
+        over={
+            "requirements.natural_frequency_Hz": "rising",
+            "requirements.load_inertia_kgm2": "rising",
+            "motion": "ends",
+        },
     ),
     Check(
         code="position_error",
@@ -149,6 +157,16 @@ PROPERTIES: tuple[Check, ...] = (
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="φ_e ≤ φ_req",
         accepted=N_("the permitted position error rises to {value}"),
+        over={
+            "peak_torque_Nm": "rising",
+            "torque_sign": "unproven",
+            "requirements.rest_friction_Nm": "rising",
+            "requirements.position_error_arcmin": "falling",
+            "requirements.position_error_mm": "falling",
+            "requirements.position_radius_mm": "rising",
+            "motion": "unproven",
+        },
+        proven=lambda c: c.duty.torque_both_ways,
     ),
     Check(
         code="weight",
@@ -168,6 +186,7 @@ PROPERTIES: tuple[Check, ...] = (
         limited_by="weight_kg",
         relation="m ≤ m_req",
         accepted=N_("the weight limit rises to {value}"),
+        over={"requirements.weight_kg": "falling"},
     ),
     Check(
         code="length",
@@ -187,5 +206,6 @@ PROPERTIES: tuple[Check, ...] = (
         limited_by="length_max_mm",
         relation="L_max ≤ L_req",
         accepted=N_("the length limit rises to {value}"),
+        over={"requirements.length_mm": "falling"},
     ),
 )

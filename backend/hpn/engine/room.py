@@ -1,0 +1,232 @@
+"""Room of a selected gear over its tolerances: where its worst case is, how far they may grow, which of them decide.
+
+Also the share of points of the box at which it fails, by samples, with an upper bound.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import msgspec
+import numpy as np
+from msgspec import UNSET, UnsetType
+from pydantic import Field
+
+from hpn.application import Application, InputError
+from hpn.application.tolerances import Interval
+from hpn.catalogue import Catalogue
+from hpn.catalogue.gear import Gear
+from hpn.engine.duty import Duty
+from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate, judged_by
+from hpn.engine.members import SAMPLES, Members, members_of
+from hpn.engine.tolerance import Found, chunks_of, worst_bound, worst_cases
+from hpn.physics.equations import ROUNDING
+from hpn.words.reply import Reply
+
+CLOSE = 1e-9
+"""Relative width in which the factor of growth is known."""
+
+MOST_STEPS = 60
+FEW_SAMPLES = 64
+"""Points that are looked at for growth and for the tolerances that decide, where nothing is proved."""
+
+CONFIDENCE = 0.95
+
+MOST_SAMPLES = 100_000
+
+
+class Deciding(Reply, frozen=True):
+    """One tolerance, and what the worst case falls to without it."""
+
+    path: Annotated[str, Field(description="Path of the tolerance.")]
+    worst: Annotated[float | None, Field(description="Worst utilisation of the selected gear with this input exact.")]
+
+
+class Share(Reply, frozen=True):
+    """Points at random at which the selected gear fails."""
+
+    samples: Annotated[int, Field(description="Points that were looked at, evenly spread over the tolerances.")]
+    failing: Annotated[int, Field(description="Points at which a check fails.")]
+    upper: Annotated[float, Field(description="Upper bound of the share of such points, with 95 % confidence.")]
+
+
+class Room(Reply, frozen=True):
+    """The selected gear over the whole tolerance."""
+
+    holds: Annotated[bool, Field(description="True: the gear passes everywhere inside the tolerances.")]
+    exact: Annotated[bool, Field(description="True: proved. False: a check was sampled, so it may be worse somewhere.")]
+    case: Annotated[dict[str, Any], Field(description="The application at its worst corner.")]
+    link: Annotated[str, Field(description="Address of the page that shows that case.")]
+    growth: Annotated[
+        float | None,
+        Field(
+            description="Factor by which all tolerances may grow together, at most up to the first bound of an input; "
+            "below 1 where they must shrink; null without limit."
+        ),
+    ]
+    deciding: Annotated[
+        tuple[Deciding, ...],
+        Field(description="Tolerances without which the worst case falls, the greatest fall first."),
+    ]
+    share: (
+        Annotated[Share, Field(description="Share of the points that fail, where samples were asked for.")] | UnsetType
+    ) = UNSET
+
+
+@dataclass(frozen=True, eq=False)
+class _Alone:
+    """A gear by itself under an application."""
+
+    application: Application
+    base: Evaluation
+
+    @property
+    def catalogue(self) -> Catalogue:
+        return self.base.catalogue
+
+    def members(self, intervals: Sequence[Interval]) -> Members:
+        return members_of(self.application, self.catalogue, intervals)
+
+    def judged(self, found: Sequence[Found]) -> Evaluation:
+        """Evaluation of worst cases, each in the place of an application."""
+        count = len(found)
+        used = np.stack([one.used for one in found], axis=1)
+        asked = np.repeat(self.base.asked, count, axis=1)
+        bound = np.repeat(worst_bound(self.base), count, axis=1)
+        return judged_by(replace(self.base, asked=asked), used, bound)
+
+    def worst(self, boxes: Sequence[Sequence[Interval]], samples: int = FEW_SAMPLES) -> tuple[list[Found], Evaluation]:
+        """Worst cases over some intervals, and their evaluation."""
+        members = [self.members(intervals) for intervals in boxes]
+        found = worst_cases(members, self.base.checks, self.base.gears, self.catalogue, samples)
+        return found, self.judged(found)
+
+
+def room_of(
+    application: Application,
+    equipped: Application,
+    gear: Gear,
+    catalogue: Catalogue,
+    link_of: Callable[[Application], str],
+    samples: int = 0,
+) -> Room:
+    """Room of a selected gear; `equipped` is the application with the figures of its motor."""
+    gears = catalogue.listed([gear])
+    alone = _Alone(application, evaluate(Duty.of([equipped]), gears, catalogue))
+    intervals = application.intervals
+    paths = list(dict.fromkeys(one.path for one in intervals))
+    without = [tuple(one for one in intervals if one.path != path) for path in paths]
+    (whole,), judged = alone.worst([intervals], SAMPLES)
+    holds, worst = bool(judged.verdict.item(0, 0) == SUITABLE), judged.utilisation.item(0, 0)
+    governing = judged.governing.item(0, 0)
+    alternatives = alone.worst(without)[1].utilisation[:, 0] if without else np.empty(0)
+    box, point = whole.points[whole.at.item(governing, 0)]
+    case = box.application_at(point)
+    deciding = [
+        Deciding(path, float(value))
+        for path, value in zip(paths, alternatives.tolist(), strict=True)
+        if value < worst * (1 - ROUNDING) or (math.isfinite(value) and not math.isfinite(worst))
+    ]
+    return Room(
+        holds=holds,
+        exact=bool(whole.exact.all()),
+        case=msgspec.json.decode(case.model_dump_json(exclude_unset=True)),
+        link=link_of(case),
+        growth=_growth(alone, intervals, holds),
+        deciding=tuple(sorted(deciding, key=lambda one: one.worst or 0.0)),
+        share=_share(alone, alone.members(intervals), samples) if samples else UNSET,
+    )
+
+
+# --- Growth -----------------------------------------------------------------------------------------------------------
+
+
+def _growth(alone: _Alone, intervals: Sequence[Interval], holds: bool) -> float | None:
+    """Factor by which all tolerances may grow, or must shrink; None without a limit."""
+    most = min((one.most_growth for one in intervals), default=math.inf)
+    if not math.isfinite(most):
+        return None
+
+    def excess(factor: float) -> float:
+        """Largest utilisation over its bound less 1; infinite where a check has no number."""
+        try:
+            _, judged = alone.worst([[one.grown(factor) for one in intervals]])
+        except InputError:
+            return math.inf
+        if judged.verdict.item(0, 0) == SUITABLE:
+            return min(float(np.nanmax(judged.used / judged.bound)) - 1, -0.0)
+        used = np.where(judged.asked[:, :1], judged.used, 0.0) / judged.bound
+        return max(float(used.max()) - 1, CLOSE) if np.isfinite(used).all() else math.inf
+
+    low, high = (1.0, 2.0) if holds else (0.0, 1.0)
+    top = most * (1 - CLOSE)
+    at_low = excess(low)
+    if at_low > 0:
+        return 0.0
+    while True:
+        high = min(high, top)
+        at_high = excess(high)
+        if at_high > 0:
+            break
+        if high == top or not holds:  # a sample fails that is not among the few
+            return most if holds else high
+        low, at_low, high = high, at_high, 4 * high
+    return _zero(excess, low, high, at_low, at_high)
+
+
+def _zero(excess: Callable[[float], float], low: float, high: float, at_low: float, at_high: float) -> float:
+    """Largest factor at which nothing exceeds its bound: regula falsi (Illinois), bisection without a number."""
+    kept = 0
+    for _ in range(MOST_STEPS):
+        if high - low <= CLOSE * high:
+            break
+        middle = (low + high) / 2
+        if math.isfinite(at_high) and at_low < 0:
+            middle = high - at_high * (high - low) / (at_high - at_low)
+            room = CLOSE * high / 4
+            middle = min(max(middle, low + room), high - room)
+        at_middle = excess(middle)
+        if at_middle <= 0:
+            low, at_low = middle, at_middle
+            at_high, kept = (at_high / 2 if kept > 0 else at_high), 1
+        else:
+            high, at_high = middle, at_middle
+            at_low, kept = (at_low / 2 if kept < 0 else at_low), -1
+    return low
+
+
+# --- Share ------------------------------------------------------------------------------------------------------------
+
+
+def _share(alone: _Alone, members: Members, samples: int) -> Share:
+    """Share of points at random at which the gear fails."""
+    failing = looked = 0
+    bound = worst_bound(alone.base)
+    for box, points in members.spread(min(samples, MOST_SAMPLES)):
+        for part in chunks_of(points):
+            judged = evaluate(box.at(part), alone.base.gears, alone.catalogue)
+            judged = judged_by(judged, judged.used, np.broadcast_to(bound, judged.bound.shape))
+            failing += int((judged.verdict != SUITABLE).sum())
+            looked += len(part)
+    return Share(looked, failing, upper_share(looked, failing))
+
+
+def upper_share(samples: int, failing: int) -> float:
+    """Upper end of a share's one-sided interval with 95 % confidence (Clopper and Pearson, Biometrika 26, 1934).
+
+    The share at which so few failing samples have a probability of 5 %; without any about 3 / n, the rule of three.
+    """
+    if failing >= samples:
+        return 1.0
+    counts = np.arange(failing + 1)
+    steps = np.log(np.maximum(samples - counts + 1, 1)) - np.log(np.maximum(counts, 1))
+    steps[0] = 0.0
+    ways = np.cumsum(steps)  # logarithm of the binomial coefficients
+    low, high = failing / samples, 1.0
+    for _ in range(MOST_STEPS):
+        p = (low + high) / 2
+        terms = ways + counts * math.log(p) + (samples - counts) * math.log1p(-p)
+        seldom = math.log(1 - CONFIDENCE) > terms.max() + math.log(float(np.exp(terms - terms.max()).sum()))
+        low, high = (low, p) if seldom else (p, high)
+    return high
