@@ -30,7 +30,7 @@ class Selection:
 
     def json(self, link: str) -> bytes:
         """The reply as JSON."""
-        return selection.encode(self.judged.selection(link))
+        return selection.encode(self.judged.selection(lambda _: link))
 
     def reply(self, link: str) -> Json:
         """The reply as plain Python values."""

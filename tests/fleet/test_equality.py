@@ -8,6 +8,7 @@ import pytest
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.engine.candidates import Candidate, WorstCase
 from hpn.engine.selection import select
 from hpn.fleet.order import Order
 from hpn.fleet.run import here, size_fleet, threads
@@ -56,7 +57,17 @@ def expected(axis: object, application: Json, catalogue: Catalogue) -> Row:
         "suitable": sum(candidate.status == "suitable" for candidate in selection.candidates),
         "runner_up": second.designation if second and second.rank == 2 else None,
         "average_torque_Nm": selection.duty.average_torque_Nm,
+        **_over_tolerance(best),
         "error": None,
+    }
+
+
+def _over_tolerance(best: Candidate | None) -> Row:
+    worst = best.worst if best is not None and isinstance(best.worst, WorstCase) else None
+    return {
+        "holds": worst and worst.status == "suitable",
+        "worst_utilisation": worst and worst.utilisation,
+        "worst_governing_check": worst and worst.governing_check,
     }
 
 

@@ -72,6 +72,15 @@ APPLICATIONS: tuple[Json, ...] = (
     ),
     {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}, "requirements": {"motor": MOTOR}},
     {"duty_cycle": {"motion": LIFTING}, "rank_by": "motor_torque"},
+    worked_example(
+        requirements={"worst_case_utilisation": 0.9, "over_tolerance": True},
+        tolerances={
+            "torque_Nm": {"percent": 10},
+            "phases.1.torque_Nm": {"minus": {"percent": 0}, "plus": {"absolute": 3.5}},
+            "pause_s": {"percent": 50},
+        },
+    ),
+    {"duty_cycle": {"motion": TURNING}, "tolerances": {"motion.mechanism.inertia_kgm2": {"percent": 5}}},
 )
 
 _MODELS = [Application.model_validate(entry) for entry in APPLICATIONS]
@@ -202,9 +211,22 @@ SUPPLEMENTS = (
 )
 """A file of a supplement each: its name in the first line, its content below."""
 
+OF_THE_PAGE = ("tol", "gear", "pin", "do", "phases", "written", "was")
 SYMBOLS = tuple(
     b"&%s=" % name.encode()
-    for name in (*PHASE_BY_NAME, *MOVE_BY_NAME, *BY_NAME, *LABELS, "gear", "pin", "do", "phases", "written", "was")
+    for name in (
+        *PHASE_BY_NAME,
+        *MOVE_BY_NAME,
+        *BY_NAME,
+        *LABELS,
+        "tol",
+        "gear",
+        "pin",
+        "do",
+        "phases",
+        "written",
+        "was",
+    )
 )
 FIELDS = tuple(
     b'"%s"' % name.encode()
@@ -224,6 +246,7 @@ FIELDS = tuple(
             "rest",
         ),
         *("shaft_centre_mm", "20A", "others"),
+        *("tolerances", "percent", "absolute", "minus", "plus", "phases.1.torque_Nm", "motion.mechanism.mass_kg"),
         *("applications", "digitised", "L10", "", "x" * 300, "\\ud800", "\\u0000", "\u202e"),
     )
 )

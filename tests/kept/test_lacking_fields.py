@@ -50,7 +50,7 @@ NEEDED = {
 def reply_of(name: str) -> Json:
     """Answer of today's engine to an application as JSON."""
     application = Application.model_validate(APPLICATIONS[name])
-    reply: Json = msgspec.json.decode(encode(select(application, CATALOGUE, to_link(application))))
+    reply: Json = msgspec.json.decode(encode(select(application, CATALOGUE, to_link)))
     return reply
 
 

@@ -136,7 +136,7 @@ async def read_back(database: str, clients: Clients, catalogue: Catalogue, fault
         assert (found.title, found.reference) == (body["title"], body["reference"])
         assert orjson.loads(found.application) == body["application"]
         wanted = Application.model_validate(body["application"])
-        assert found.result == encode(select(wanted, catalogue, to_link(wanted)))
+        assert found.result == encode(select(wanted, catalogue, to_link))
     titles, cursor = [], None
     while True:
         page = await store.page(cursor=cursor, limit=200)

@@ -71,7 +71,7 @@ def typed_export_of(
     asked = Application.model_validate(application)
     return export.Export(
         application=asked,
-        selection=select(asked, catalogue, to_link(asked)),
+        selection=select(asked, catalogue, to_link),
         link="http://hpn.example/selections/0123456789abcdefghijkl",
         heading=export.Heading(title, reference),
         created=CREATED,
@@ -117,7 +117,7 @@ class Export:
 def export_of(application: Json, catalogue: Catalogue, *, title: str = "Rotary table", reference: str = "") -> Export:
     """An export as a saved selection gives it."""
     asked = Application.model_validate(application)
-    reply = msgspec.json.decode(encode(select(asked, catalogue, to_link(asked))))
+    reply = msgspec.json.decode(encode(select(asked, catalogue, to_link)))
     return Export(asked, reply, title, reference, catalogue)
 
 

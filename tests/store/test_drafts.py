@@ -38,7 +38,7 @@ def test_a_draft_has_the_reply_of_its_own_application(supplemented: Supplement) 
     for number, parts in enumerate(given):
         application = Application.model_validate(parts)
         try:
-            reply = encode(select(application, catalogue, to_link(application)))
+            reply = encode(select(application, catalogue, to_link))
         except InputError:
             with pytest.raises(InputError):
                 draft_of(catalogue, application, Labels(), None)

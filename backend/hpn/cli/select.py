@@ -23,7 +23,7 @@ def run(options: argparse.Namespace) -> int:
     """Print the reply, as JSON into a pipe and as a table on a terminal unless asked otherwise."""
     application, settings = _application(options.file), Settings()
     catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
-    selection = select(application, catalogue, to_link(application))
+    selection = select(application, catalogue, to_link)
     if options.json or not (options.table or sys.stdout.isatty()):
         sys.stdout.write(encode(selection).decode() + "\n")
     else:

@@ -7,17 +7,18 @@ models' JSON Schema, so that a new input needs no line here.
 """
 
 import json
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.types as kinds
 
 from hpn.application.faults import Location
-from hpn.application.input_fields import FIELDS, PHASE_FIELDS, InputField
+from hpn.application.input_fields import FIELDS, PHASE_FIELDS, PHASE_FIGURES, InputField
 from hpn.application.unique import require_unique
 from hpn.fleet.faults import OF_ITEM, OF_PHASE, OF_SIZE
 from hpn.fleet.uuids import is_uuid
@@ -87,6 +88,59 @@ def is_text(given: pa.DataType) -> bool:
     return bool(kinds.is_string(given) or kinds.is_large_string(given) or kinds.is_string_view(given))
 
 
+TOLERANCES = "tolerances"
+OF_TOLERANCE = re.compile(r"tolerances\.([A-Za-z0-9_.]{1,100}?)\.((?:minus\.|plus\.)?(?:percent|absolute))")
+ONE_PHASE = re.compile(r"phases\.(?:0|[1-9][0-9]{0,4})\.([A-Za-z_]+)")
+
+
+@lru_cache(maxsize=4096)
+def tolerance_column(name: str) -> Column | None:
+    """Column of a tolerance, such as `tolerances.torque_Nm.percent`; None for any other name.
+
+    There are as many as inputs, and one for each phase.
+    """
+    match = OF_TOLERANCE.fullmatch(name)
+    if match is None:
+        return None
+    path, field = match[1], ONE_PHASE.fullmatch(match[1])
+    if (field[1] not in PHASE_FIGURES) if field else (path not in PHASE_FIGURES and path not in _NUMBERS):
+        return None
+    return Column(
+        name=name,
+        path=(TOLERANCES, path, *match[2].split(".")),
+        kind="number",
+        is_list=False,
+        required=False,
+        default=None,
+        least=0.0,
+        most=math.inf,
+        above=-math.inf,
+        choices=None,
+    )
+
+
+_NUMBERS = {"pause_s", *(name for name, field in FIELDS.items() if field.kind == "number" and not field.is_list)}
+
+
+class Named(dict[str, Column]):
+    """Columns by name; those of tolerances are known without a line each."""
+
+    def __missing__(self, name: str) -> Column:
+        column = tolerance_column(name)
+        if column is None:
+            raise KeyError(name)
+        return column
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or (isinstance(name, str) and tolerance_column(name) is not None)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            return default
+
+
 @dataclass(frozen=True)
 class Columns:
     """Every column that a table of axes may have."""
@@ -102,7 +156,7 @@ class Columns:
     @cached_property
     def all(self) -> Mapping[str, Column]:
         """Columns by name."""
-        return {**self.phases, **self.others}
+        return Named({**self.phases, **self.others})
 
     def application_of(self, row: Mapping[str, Any]) -> Json:
         """The application that a row stands for, as JSON that the models validate; nulls are not given.
@@ -118,6 +172,9 @@ class Columns:
                     place = place.setdefault(part, {})
                 is_list = isinstance(value, list)
                 place[column.path[-1]] = [_plain(item, column) for item in value] if is_list else _plain(value, column)
+        for name, value in row.items():
+            if value is not None and (tolerance := tolerance_column(name)) is not None:
+                _put(application, tolerance.path, float(value))
         return application
 
     def column_at(self, location: Location) -> tuple[str, Place | None]:
@@ -131,6 +188,12 @@ class Columns:
             return column.name, (OF_SIZE, "size", names[-1][:SIZE_SHOWN])
         items = [(OF_ITEM, "number", str(part + 1)) for part in location if isinstance(part, int)]
         return (self.at[names].name if names in self.at else ".".join(names)), (items[0] if items else None)
+
+
+def _put(document: Json, path: Sequence[str], value: float) -> None:
+    for part in path[:-1]:
+        document = document.setdefault(part, {})
+    document[path[-1]] = value
 
 
 def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]:
@@ -171,10 +234,12 @@ def _column(name: str, field: InputField, *, is_list: bool) -> Column:
 
 COLUMNS = Columns(
     {name: _column(name, field, is_list=True) for name, field in PHASE_FIELDS.items()},
-    {
-        name: _column(name, field, is_list=field.is_list)
-        for name, field in (("pause_s" if field.path == PAUSE else path, field) for path, field in FIELDS.items())
-    },
+    Named(
+        {
+            name: _column(name, field, is_list=field.is_list)
+            for name, field in (("pause_s" if field.path == PAUSE else path, field) for path, field in FIELDS.items())
+        }
+    ),
 )
 """Columns of the models."""
 
@@ -187,5 +252,6 @@ def are_taken(names: Sequence[str], is_in_list_form: bool) -> bool:
     """True for columns that the command knows, an index of pandas among them; long form with other columns is read as a
     table of cells, in which `20A` and `4/5` are lists."""
     known = {AXIS, *COLUMNS.phases, *(COLUMNS.others if is_in_list_form else ())}
+    known |= {name for name in names if is_in_list_form and tolerance_column(name)}
     given = {name for place, name in enumerate(names) if not INDEX.fullmatch(name) and (place or name)}
     return {AXIS, "torque_Nm"} <= given <= known

@@ -135,6 +135,10 @@ def rows_of(answers: pa.Table) -> list[AxisRow]:
     return [_row(place, **cells) for place, cells in enumerate(answers.to_pylist(), start=1)]
 
 
+NOT_LISTED = ("life_L10_h", "holds", "worst_utilisation", "worst_governing_check")
+"""Columns of the answers that a line of the list doesn't have; older answers lack those of tolerances."""
+
+
 def _row(place: int, **cells: Any) -> AxisRow:
     nearest = [cells.pop(name) for name in NEAREST.names]
     cells["reasons"] = reasons_of(cells.pop(FAULTS, None), cells.pop("error", None))
@@ -144,7 +148,8 @@ def _row(place: int, **cells: Any) -> AxisRow:
         state = "selected" if cells["selected"] else "unsuitable"
     shortest = cells.pop("shortest_life_h", None), cells.pop("shortest_life_of", "")
     cells["life"] = life_of(*shortest) if state == "selected" and shortest[1] != "" else None
-    del cells["life_L10_h"]
+    for name in NOT_LISTED:
+        cells.pop(name, None)
     if state == "unsuitable":
         cells |= dict(zip(("selected", "governing_check", "utilisation"), nearest, strict=True))
     return AxisRow(place, cells.pop(AXIS) or "", state, cells.pop("selected"), **cells)

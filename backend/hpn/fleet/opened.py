@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from hpn.fleet.columns import AXIS, COLUMNS
+from hpn.fleet.columns import AXIS, COLUMNS, tolerance_column
 from hpn.fleet.csv_tables import CsvTable, GzipCsvTable
 from hpn.fleet.order import FleetError, status_of, suffix_of, wrong_encoding
 from hpn.fleet.tables import Table
@@ -52,6 +52,7 @@ def _require_file(path: Path) -> None:
 
 
 def _require(table: Table, allowed: list[str], required: list[str]) -> None:
+    allowed = [*allowed, *filter(tolerance_column, table.names)]
     unknown = [name for name in table.names if name not in allowed]
     others = [f"column {name} is missing" for name in required if name not in table.names]
     others += [f"column {name:.80} is there twice" for name, count in Counter(table.names).items() if count > 1]

@@ -1,6 +1,7 @@
 """From a table of axes in list form to their answers: a row for each axis, and a row for each fault."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,12 @@ from hpn.catalogue import Catalogue
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.candidates import Candidate, Reserve, candidates_of
 from hpn.engine.checks import CHECKS
-from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate
+from hpn.engine.evaluation import SUITABLE, UNRATED, Evaluation, Worst, evaluate
 from hpn.fleet.axes import Axes, BoolArray, IntArray, cells_of
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.faults import Fault, kept, text_of
 from hpn.fleet.tables import Batch
+from hpn.fleet.toleranced import have_tolerances, over_tolerances
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_, Sentence
 
@@ -53,6 +55,9 @@ def answer_fields(axis: pa.DataType) -> pa.Schema:
             ("suitable", pa.int64()),
             ("runner_up", pa.string()),
             ("average_torque_Nm", pa.float64()),
+            ("holds", pa.bool_()),
+            ("worst_utilisation", pa.float64()),
+            ("worst_governing_check", pa.string()),
             ("error", pa.string()),
             (FAULTS, pa.string()),
         ]
@@ -78,15 +83,16 @@ def outcome(
     axis, count = batch.rows[AXIS], batch.rows.num_rows
     is_faulty = np.zeros(count, np.bool_)
     is_faulty[[fault.row for fault in batch.faults]] = True
-    axes = Axes(batch.rows, catalogue, is_faulty)
+    bear = have_tolerances(batch.rows)
+    axes = Axes(batch.rows, catalogue, is_faulty | bear)
     answers, candidates = _Answers(count), _Candidates()
-    for gears, members in axes.chunks():
-        evaluation, places = evaluate(axes.duty(members), gears, catalogue), axes.places[members]
+    is_sound = np.zeros(count, np.bool_)
+    judged = ((evaluate(axes.duty(some), gears, catalogue), axes.places[some]) for gears, some in axes.chunks())
+    for evaluation, places in chain(judged, over_tolerances(batch.rows, bear & ~is_faulty, catalogue)):
         answers.add(evaluation, places)
+        is_sound[places] = True
         if with_candidates:
             candidates.add(evaluation, places)
-    is_sound = np.zeros(count, np.bool_)
-    is_sound[axes.places] = True
     faults = [placed(fault) for fault in _all_faults(batch, is_sound, catalogue)]
     found = {"answers": answers.table(axis, faults), "rejected": _rejected(axis, faults)}
     return found | ({"candidates": candidates.table(axis)} if with_candidates else {})
@@ -106,6 +112,8 @@ class _Answers:
         self.life_L10_h, self.shortest_life_h = np.full(count, np.nan), np.full(count, np.nan)
         self.shortest_life_of, self.limit_Nm = np.full(count, "", object), np.full(count, np.nan)
         self.suitable = np.full(count, -1, np.int64)
+        self.holds, self.worst_governing = np.full(count, -1, np.int8), np.full(count, -1, np.int32)
+        self.worst_utilisation = np.full(count, np.nan)
         self.designations: list[str] = []
 
     def add(self, evaluation: Evaluation, places: IntArray) -> None:
@@ -125,8 +133,20 @@ class _Answers:
         for own, figure in (*lives, (self.limit_Nm, figures.motor_torque_limit_Nm)):
             own[places] = np.where(found, figure[rows, best], np.nan)
         self.shortest_life_of[places] = np.where(found, figures.shortest_life_of[rows, best], "")
+        if evaluation.worst is not None:
+            self._add_worst(evaluation.worst, places, best, found)
         suits[rows, best] = False
         self.runner_up[places] = np.where(count > 1, names[evaluation.foremost(suits)], -1)
+
+    def _add_worst(self, worst: Worst, places: IntArray, best: IntArray, found: BoolArray) -> None:
+        """Take the worst cases of the selected gears."""
+        judged, rows = worst.evaluation, np.arange(len(places))
+        codes = np.array([CODES.index(check.code) for check in judged.checks], np.int32)
+        found = found & worst.given
+        rated = found & (judged.verdict[rows, best] != UNRATED)
+        self.holds[places] = np.where(found, judged.verdict[rows, best] == SUITABLE, -1)
+        self.worst_utilisation[places] = np.where(found, judged.utilisation[rows, best], np.nan)
+        self.worst_governing[places] = np.where(rated, codes[judged.governing[rows, best]], -1)
 
     def table(self, axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
         """The answers, with what was wrong."""
@@ -142,6 +162,9 @@ class _Answers:
             pa.array(self.suitable, mask=self.suitable < 0),
             _named(self.runner_up, self.designations),
             _finite(self.average_torque_Nm),
+            pa.array(self.holds == 1, mask=self.holds < 0),
+            _finite(self.worst_utilisation),
+            _named(self.worst_governing, CODES),
             *_reasons(len(self.suitable), faults),
         ]
         return pa.Table.from_arrays(columns, schema=answer_fields(axis.type))

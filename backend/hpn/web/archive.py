@@ -116,7 +116,7 @@ def draft_of(
     catalogue: Catalogue, application: Application, labels: Labels, key: str | None, owner: str | None = None
 ) -> Draft:
     """Record of an application to be saved: its own JSON and the reply of `select`; InputError as there."""
-    selection = select(application, catalogue, to_link(application))
+    selection = select(application, catalogue, to_link)
     code = _ordered(catalogue, selection, labels.ordering_code)
     shown = selection.foremost if code is None else selection.candidate(code.gear.designation)
     assert shown is not None  # `_ordered` refuses what is no candidate
@@ -218,7 +218,7 @@ def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) 
     application, after, found, problem = None, None, list[Difference](), None
     try:
         application = Application.model_validate_json(saved.application)
-        after = select(application, catalogue, to_link(application))
+        after = select(application, catalogue, to_link)
         found = differences(fields_of(saved.result), after)
     except (ValidationError, InputError) as error:
         problem = Problem.of(error)

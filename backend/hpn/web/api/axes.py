@@ -202,7 +202,7 @@ def _selection(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes
         faults = [Fault(location, sentence.text, code) for location, sentence, code in found.faults]
         raise Problem(409, "the axis is open: its application is incomplete, or has errors", faults)
     try:
-        return encode_selection(select(found.application, catalogue, to_link(found.application)))
+        return encode_selection(select(found.application, catalogue, to_link))
     except InputError as error:
         raise Problem(409, str(error), Problem.of(error).errors) from None
 

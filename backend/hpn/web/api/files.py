@@ -200,7 +200,7 @@ def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Reque
 
 def _computed(application: Application, request: Request) -> Export:
     catalogue, link = request.app.state.catalogue, to_link(application)
-    selection = select(application, catalogue, link)
+    selection = select(application, catalogue, to_link)
     gear = catalogue.by_designation[selection.foremost.designation]
     return Export(
         application=application,

@@ -71,6 +71,14 @@ class BatchLine(Reply, frozen=True):
     ) = UNSET
     utilisation: Annotated[float | None, Field(description="Utilisation of that check.")] | UnsetType = UNSET
     suitable: Annotated[int, Field(description="Number of suitable gears.")] | UnsetType = UNSET
+    holds: (
+        Annotated[bool | None, Field(description="True: the gear passes over the whole tolerance, if given.")]
+        | UnsetType
+    ) = UNSET
+    worst_utilisation: Annotated[float | None, Field(description="Its utilisation in the worst case.")] | UnsetType = (
+        UNSET
+    )
+    worst_governing_check: Annotated[str | None, Field(description="Check that has it.")] | UnsetType = UNSET
     link: Annotated[str, Field(description=LINK)] | UnsetType = UNSET
     problem: Annotated[ProblemReply, Field(description="Reason for an item without a result.")] | UnsetType = UNSET
 

@@ -1,11 +1,14 @@
 """`POST /api/v1/select`: a gear for one application."""
 
-from fastapi import APIRouter
+from typing import Annotated
+
+from fastapi import APIRouter, Query
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application
+from hpn.engine.room import MOST_SAMPLES
 from hpn.engine.selection import Selection, encode, select
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes
@@ -16,6 +19,16 @@ from hpn.web.form.link_writer import to_link
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("calculator")])
 
+Samples = Annotated[
+    int,
+    Query(
+        ge=0,
+        le=MOST_SAMPLES,
+        description="Points of the tolerances that are sampled for the share of those that fail; fewer of a motion "
+        "and of a long cycle.",
+    ),
+]
+
 
 @router.post(
     "/select",
@@ -25,16 +38,16 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ca
     response_model=Selection,
     responses=schemas.answers(400, 408, 413, 415, 422),
 )
-async def select_one(request: Request) -> Response:
+async def select_one(request: Request, samples: Samples = 0) -> Response:
     """Evaluates every size and ratio, ranks the candidates, and gives the reason for each status."""
     state: State = request.app.state
     body = await read_body(request)
-    selected, reply = await calculate(request, body, _reply, body, state)
+    selected, reply = await calculate(request, body, _reply, body, state, samples)
     state.metrics.selections(["none" if selected is None else "selected"])
     return JSONBytes(reply)
 
 
-def _reply(body: bytes, state: State) -> tuple[str | None, bytes]:
+def _reply(body: bytes, state: State, samples: int) -> tuple[str | None, bytes]:
     application = parsed(Application, body)
-    selection = select(application, state.catalogue, to_link(application))
+    selection = select(application, state.catalogue, to_link, samples)
     return selection.selected, encode(selection)

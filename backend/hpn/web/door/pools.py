@@ -54,8 +54,9 @@ TOO_LARGE = N_("This file takes too much memory or time to read: save the table 
 SMALL_BYTES = 16 * 1024
 """Phases up to this size are computed at once: a few milliseconds, about what a change of threads may take."""
 
-LONG_WORDS = (b"motion", b"\\")
-"""Text in the JSON of every motion, however it is written: two thousand turns under gravity take half a second."""
+LONG_WORDS = (b"motion", b"tolerances", b"\\")
+"""Text in the JSON of every motion and tolerance, however it is written: two thousand turns under gravity take half a
+second, and so do thousands of points of a box."""
 
 RETRY_SECONDS = 2
 PATIENCE_SECONDS = 0.1

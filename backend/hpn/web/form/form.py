@@ -12,7 +12,7 @@ from hpn.tables.inputs import NAME
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.helpers import BodyTable
 from hpn.web.form.labels import LABELS, query_of
-from hpn.web.form.rows import WIDTHS, filled
+from hpn.web.form.rows import TOLERANCE, WIDTHS, filled
 from hpn.web.form.symbols import (
     MECHANISM_SYMBOLS,
     PHASE_SYMBOLS,
@@ -42,8 +42,8 @@ class Form:
     """A query as given, and the application it describes, or why it describes none.
 
     Of a motion the mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia
-    may be worked out from. `asides` are the inputs of other ways to give the cycle. `written` is the marker of the
-    language and units in which a form was filled in; None for a link.
+    may be worked out from. `tolerances` are those of a link. `asides` are the inputs of other ways to give the cycle.
+    `written` is the marker of the language and units in which a form was filled in; None for a link.
     """
 
     rows: tuple[Mapping[str, str], ...]
@@ -52,6 +52,7 @@ class Form:
     moves: tuple[Mapping[str, str], ...] = ()
     has_motion: bool = False
     bodies: BodyTable = field(default_factory=BodyTable)
+    tolerances: tuple[str, ...] = ()
     asides: tuple[str, ...] = ()
     shown: frozenset[str] = frozenset()
     gear: str = ""
@@ -140,6 +141,7 @@ class Form:
 def address_of_empty(form: Form) -> str:
     """Address of a form without a phase, with all else that it says."""
     lists = [(name, text) for name, texts in form.lists.items() for text in texts]
+    lists += [(TOLERANCE, text) for text in form.tolerances]
     given = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip() and name != "mech"]
     start = START[form.mechanism if form.has_motion else "phases"]
     return "&".join(filter(None, (f"/?{start}", urlencode(given)))) + query_of(form.labels)

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from hpn.application import MOST_WISHES
 from hpn.application.motion import MAXIMUM_MOVES
 from hpn.application.shaft_centre import MOST_SIZES
+from hpn.application.tolerances import MOST_TOLERANCES
 from hpn.physics.motion.bodies import MOST_BODIES
 from hpn.tables.by_size import BySize, by_size
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import WAS, WRITTEN, Notation
 from hpn.web.form.labels import LABELS
-from hpn.web.form.rows import OF_ANY_ROW, SHARED, TEXT, Table, cells_of, groups_of, shown_columns
+from hpn.web.form.rows import OF_ANY_ROW, SHARED, TEXT, TOLERANCE, Table, cells_of, groups_of, shown_columns
 from hpn.web.form.symbols import (
     BODY_BY_NAME,
     BY_NAME,
@@ -42,6 +43,12 @@ CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHAN
 
 OF_ONE_WAY = {*CYCLE_NAMES, REST_FRICTION, REVERSES}
 """Names of what belongs to one way alone in which a cycle is given."""
+
+
+def is_of_one_way(name: str, text: str) -> bool:
+    """True for an input that belongs to one way alone, and for its tolerance."""
+    return (re.split("[.:]", text.strip())[0] if name == TOLERANCE else name) in OF_ONE_WAY
+
 
 _OF_MOTION = {symbol.name for symbol in (*TURN_SYMBOLS, *MECHANISM_SYMBOLS)}.difference(OF_ANY_ROW)
 _OF_PEOPLE = {*LABELS, NAME.role}
@@ -109,6 +116,7 @@ class Given:
         self.pins: list[str] = []
         self.unknown: list[tuple[str, str]] = []
         self.asides: list[str] = []
+        self.tolerances: list[str] = []
         self.typed: str | None = None
         self.bodies = Table(BODY_BY_NAME, MOST_BODIES)
         self._begin(pairs)
@@ -159,6 +167,8 @@ class Given:
             self.pins += [text.strip()] if text.strip() else []
         elif name == ASIDE:
             self.asides.append(text)
+        elif name == TOLERANCE:  # one more than there may be is enough to refuse them
+            self.tolerances += [text] if text.strip() and len(self.tolerances) <= MOST_TOLERANCES else []
         elif name in PAGE_NAMES:
             self.page[name] = text
         elif name in LABELS:
@@ -214,6 +224,7 @@ class Given:
     def cycle(self) -> list[tuple[str, str]]:
         """Pairs of the duty cycle and of what belongs to the way in which it is given."""
         single = [(name, text) for name in self.single if name in OF_ONE_WAY for text in self.single[name]]
+        single += [(TOLERANCE, text) for text in self.tolerances if is_of_one_way(TOLERANCE, text)]
         tables = (self.phases, self.moves)
         return single + [
             (name, row[name]) for table in tables for row in table.rows for name in table.counts if name in row
@@ -225,6 +236,7 @@ class Given:
             self.single.pop(name, None)
             self.scalars.pop(name, None)
         self.typed = None
+        self.tolerances = [text for text in self.tolerances if not is_of_one_way(TOLERANCE, text)]
         self._begin(pairs)
         for name, text in pairs:
             self.add(name, text)
@@ -238,6 +250,7 @@ class Given:
             if name not in CYCLE_NAMES:
                 del self.single[name]
                 self.scalars.pop(name, None)
+        self.tolerances = [text for text in self.tolerances if is_of_one_way(TOLERANCE, text)]
 
     # --- What is given ------------------------------------------------------------------------------------------------
 
@@ -255,6 +268,7 @@ class Given:
         texts = {**self.single, **self.lists, **self.labels, **{name: [self.scalars.get(name, "")] for name in BY_SIZE}}
         named = [(name, text) for name in texts for text in texts[name]]
         page = [*self.page.items(), *(("pin", pin) for pin in self.pins), *((ASIDE, aside) for aside in self.asides)]
+        page += [(TOLERANCE, text) for text in self.tolerances]
         pairs = (*named, *page, *self.unknown)
         return [(name, text) for name, text in pairs if text.strip() and name not in (WRITTEN, WAS)]
 
@@ -297,7 +311,7 @@ def _beside_motion(phases: Table) -> Iterable[FieldProblem]:
 
 def unknown_name(name: str) -> Sentence:
     leaves = {s.path[-1].lower(): s.name for s in (*MOVE_BY_LEAF.values(), *SYMBOLS, *PHASE_SYMBOLS)}
-    known = (*PHASE_BY_NAME, *BY_NAME, *MOVE_BY_NAME, *PAGE_NAMES, *LABELS)
+    known = (TOLERANCE, *PHASE_BY_NAME, *BY_NAME, *MOVE_BY_NAME, *PAGE_NAMES, *LABELS)
     names = {each.lower(): each for each in known}
     bare = name[:60].strip().removesuffix("[]").strip()
     close = likeness(bare, leaves | names, 0.4)

@@ -17,13 +17,14 @@ from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables.by_size import BySize, by_size
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
+from hpn.web.form import tolerances
 from hpn.web.form.buttons import play
 from hpn.web.form.form import Form
 from hpn.web.form.given import REQUIRED, FieldProblem, Given, Pairs
 from hpn.web.form.helpers import BodyTable, body_table
 from hpn.web.form.labels import LABELS
 from hpn.web.form.refusals import refusal_of
-from hpn.web.form.rows import filled
+from hpn.web.form.rows import TOLERANCE, filled
 from hpn.web.form.symbols import (
     BY_NAME,
     BY_PATH,
@@ -81,6 +82,7 @@ def parse(pairs: Pairs) -> Form:
         moves=tuple(given.moves.rows) if given.has_motion else (),
         has_motion=given.has_motion,
         bodies=body_table(given.bodies.rows) if given.has_motion else BodyTable(),
+        tolerances=tuple(given.tolerances),
         asides=tuple(given.asides),
         shown=frozenset(given.shown),
         gear=given.page.get("gear", "").strip(),
@@ -150,6 +152,10 @@ def _document(given: Given) -> tuple[dict[str, Any], list[FieldProblem]]:
     for name, texts in given.lists.items():
         values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
         document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
+    if given.tolerances:
+        mechanism = given.scalars.get("mech", "").strip() if given.has_motion else None
+        document["tolerances"], faults = tolerances.read(given.tolerances, mechanism)
+        problems += (FieldProblem(TOLERANCE, None, fault) for fault in faults)
     return document, problems
 
 
@@ -255,10 +261,13 @@ def _validated(
 
 
 def _refused(name: str, error: Any) -> Sentence:
-    """Text for an error of the model, which says the size of a number by size."""
+    """Text for an error of the model, which says the size of a number by size, and the symbol of a tolerance."""
     *path, size = error["loc"]
     if name in BY_SIZE and tuple(path) == BY_NAME[name].path:
         return _on_size(str(size), refusal_of({**error, "loc": path}))
+    if name == TOLERANCE and len(error["loc"]) > 1:  # none has a field of its own
+        symbol = tolerances.symbol_of(str(error["loc"][1]))
+        return Sentence("{symbol}: {advice}", {"symbol": symbol, "advice": refusal_of(error)})
     return refusal_of(error)
 
 
@@ -270,6 +279,8 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
         if path[: len(table)] == table:
             symbol, k = by_leaf.get("".join(path[len(table) :][:1])), index or 0
             return symbol.name if symbol else first, rows[k] if k < len(rows) else k
+    if path[:1] == ("tolerances",):
+        return TOLERANCE, None
     if path in BY_PATH:
         return BY_PATH[path].name, index
     if path[:-1] in BY_PATH and BY_PATH[path[:-1]].name in BY_SIZE:

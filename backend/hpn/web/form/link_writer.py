@@ -20,6 +20,7 @@ from hpn.application import (
 from hpn.application.motion import Motion
 from hpn.tables.by_size import BySize, Part
 from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
+from hpn.web.form.tolerances import written
 from hpn.words.designations import OTHERS
 
 _EMPTY_LOAD = OutputLoad()
@@ -59,6 +60,8 @@ def to_link(application: Application) -> str:
                 continue
             for item in value if many else _items(value):
                 link += f"&{symbol}={_written(item)}"
+    if application.tolerances:
+        link += "".join(f"&tol={text}" for text in written(application))
     load = application.output_load
     # A load case without a figure of its own must still be seen to exist.
     return link + "&fw=1" if load is not None and load == _EMPTY_LOAD else link

@@ -4,6 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from hpn.application.tolerances import WITH_VALUES
 from hpn.physics.motion.refusals import REFUSALS
 from hpn.web.form.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
 from hpn.words.terms import PROFILES
@@ -32,6 +33,8 @@ def refusal_of(error: Any) -> Sentence:
         symbols = _OF_BODY if error["type"].startswith("body_") else _OF_MOTION
         values = {name: _told(name, value, symbols) for name, value in context.items()}
         return Sentence(REFUSALS[error["type"]], values)
+    if error["type"] in WITH_VALUES:
+        return Sentence(WITH_VALUES[error["type"]], {name: str(value) for name, value in context.items()})
     if error["type"] == "extra_forbidden":
         return Sentence(N_("does not belong to this mechanism: leave it out"))
     if error["type"] == "no_load":

@@ -42,6 +42,9 @@ BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
 }
 """Columns that a body of a shape has."""
 
+TOLERANCE = "tol"
+"""Tolerance of an input of the form, repeated."""
+
 TEXT = "phases"
 """Field of the form that holds the phases as text, a phase on each line, where they are too many for a table."""
 

@@ -193,6 +193,18 @@ SYMBOLS = (
         hint=N_("0.8 keeps every load at or below 80\u202f% of its limit."),
     ),
     Symbol(
+        "uw",
+        ("requirements", "worst_case_utilisation"),
+        offered=(0.8, 0.9, 1),
+        hint=N_("Of the load checks in the worst case; by default u."),
+    ),
+    Symbol(
+        "ot",
+        ("requirements", "over_tolerance"),
+        "flag",
+        choices={"": N_("by the values as given"), "1": N_("by the worst case")},
+    ),
+    Symbol(
         "eta",
         ("requirements", "efficiency"),
         placeholder="1",
@@ -387,6 +399,12 @@ GROUPS = (
         N_("Stiffness and position"),
         ("fn", "pe", "pem", "pr", "pea", "lr", "rf"),
     ),
+    FormGroup(
+        "tolerance",
+        N_("Tolerance"),
+        ("uw", "ot"),
+        hint=N_("Counts where inputs have a tolerance."),
+    ),
     FormGroup("limits", N_("Properties and environment"), ("bm", "bl", "K3", "m", "L", "ta", "aa")),
 )
 """The form below its duty cycle, which the pause belongs to."""
@@ -405,6 +423,7 @@ LABELS = {
     "ms": N_("Angle or distance"),
     "mx": N_("External torque or force"),
     "gear": CANDIDATE["designation"].name,
+    "tol": N_("Tolerance"),
     **labels.LABELS,
 }
 """Names of the fields of the form in a list of errors."""

@@ -9,7 +9,7 @@ from hpn.application import Application, DutyCycle
 from hpn.application.phase import Phase
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry
-from hpn.web.form.given import OF_ONE_WAY, REST_FRICTION, REVERSES, Given, Pairs
+from hpn.web.form.given import REST_FRICTION, REVERSES, Given, Pairs, is_of_one_way
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.rows import OF_ANY_ROW
 from hpn.web.form.symbols import PHASE_SYMBOLS, mechanism_symbols
@@ -103,7 +103,7 @@ def _read(query: str) -> Pairs:
         pairs = parse_qsl(query, keep_blank_values=True, max_num_fields=MOST_FIELDS)
     except ValueError:
         return []
-    return [(name, text) for name, text in pairs if name in OF_ONE_WAY]
+    return [(name, text) for name, text in pairs if is_of_one_way(name, text)]
 
 
 def _written(pairs: Pairs) -> str:

@@ -171,7 +171,7 @@ def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
 def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answer:
     link = to_link(application)
     judged = judge(application, catalogue)
-    selection = judged.selection(link)
+    selection = judged.selection(to_link)
     everything = {candidate.designation: candidate for candidate in (*selection.candidates, *judged.left_out())}
     gear = catalogue.find(form.gear or selection.foremost.designation)
     assert gear is not None  # `answered` refuses what the catalogue lacks

@@ -12,7 +12,9 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
 from hpn.engine.remedy import Alternative, Growth, condition_of, growths_of, remedy_of
+from hpn.engine.room import Room
 from hpn.engine.selection import Selection
+from hpn.engine.tolerance_words import tolerance_of
 from hpn.engine.tried import needed_of
 from hpn.explain.comparison import lighter_miss
 from hpn.explain.drawings import Pictures, Subject
@@ -116,6 +118,18 @@ class Result:
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
         return Drive(self.application, self.gear, self.catalogue, self.selection)
+
+    @property
+    def tolerance(self) -> Sentence | None:
+        """Sentence on the chosen gear over the whole tolerance; None without tolerances."""
+        return tolerance_of(self.chosen)
+
+    @property
+    def failing_case(self) -> str:
+        """Address of the case in which the selected gear fails inside its tolerances; blank for none."""
+        room, chosen = self.selection.tolerance, self.chosen.designation
+        fails = isinstance(room, Room) and not room.holds and chosen == self.selection.selected
+        return room.link if fails and isinstance(room, Room) else ""
 
     @property
     def utilisation(self) -> float:

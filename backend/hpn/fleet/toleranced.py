@@ -1,0 +1,50 @@
+"""Axes with tolerances: each is read by the models, and judged with its worst cases."""
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+from pydantic import ValidationError
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue, GearList
+from hpn.engine.allowed import gears_for, with_listed_motor
+from hpn.engine.batch import chunks_of
+from hpn.engine.duty import Duty
+from hpn.engine.evaluation import Evaluation, evaluate
+from hpn.engine.tolerance import with_worst
+from hpn.fleet.axes import BoolArray, IntArray, cells_of
+from hpn.fleet.columns import COLUMNS, tolerance_column
+
+READ_AT_ONCE = 1024
+
+
+def have_tolerances(rows: pa.Table) -> BoolArray:
+    """True for axes with something in a column of a tolerance, shape (N,)."""
+    given = np.zeros(rows.num_rows, np.bool_)
+    for name in rows.column_names:
+        if tolerance_column(name) is not None:
+            given |= np.asarray(pc.is_valid(rows[name]))
+    return given
+
+
+def over_tolerances(rows: pa.Table, wanted: BoolArray, catalogue: Catalogue) -> Iterator[tuple[Evaluation, IntArray]]:
+    """Evaluations of axes with their worst cases, and their places; an axis with a fault is left out."""
+    places = np.flatnonzero(wanted).tolist()
+    for start in range(0, len(places), READ_AT_ONCE):
+        groups: dict[GearList, list[tuple[int, Application, Application]]] = defaultdict(list)
+        for place, cells in cells_of(rows, places[start : start + READ_AT_ONCE]):
+            try:
+                application = Application.model_validate(COLUMNS.application_of(cells))
+                equipped = with_listed_motor(application, catalogue)
+                groups[gears_for(application, catalogue)].append((place, application, equipped))
+            except (ValidationError, InputError):
+                continue  # its faults are found where those of all axes are
+        for gears, found in groups.items():
+            for chunk in chunks_of([len(application.duty_cycle.load_phases) for _, application, _ in found]):
+                some = [found[at] for at in chunk.tolist()]
+                duty = Duty.of([equipped for _, _, equipped in some])
+                judged = with_worst([application for _, application, _ in some], evaluate(duty, gears, catalogue))
+                yield judged, np.array([place for place, _, _ in some], np.intp)

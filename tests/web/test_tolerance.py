@@ -1,0 +1,148 @@
+"""Tolerances at the doors: the reply of `select`, a line of a batch, links, and the page."""
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.application import Application
+from hpn.web.door.bodies import pairs_of
+from hpn.web.form import link_reader
+from hpn.web.form.link_writer import to_link
+from tests.build import TURNING, Json, worked_example
+
+PATH = "/api/v1/select"
+STOP = "emergency_stop.torque_Nm"
+TOLERANCES: Json = {"torque_Nm": {"percent": 10}, "pause_s": {"percent": 50}, STOP: {"percent": 20}}
+WIDE = worked_example(tolerances=TOLERANCES | {STOP: {"percent": 40}})
+
+
+def select(api: TestClient, application: Json, query: str = "") -> Json:
+    reply = api.post(PATH + query, json=application)
+    assert reply.status_code == 200, reply.text
+    found: Json = reply.json()
+    return found
+
+
+def test_without_tolerances_the_reply_has_none_of_their_fields(api: TestClient) -> None:
+    reply = select(api, worked_example(tolerances=None))
+
+    assert "tolerance" not in reply
+    assert all("worst" not in candidate for candidate in reply["candidates"])
+    assert all("worst" not in check and "exact" not in check for check in reply["candidates"][0]["checks"])
+
+
+def test_a_gear_that_holds_has_its_worst_case_as_an_application(api: TestClient) -> None:
+    reply = select(api, worked_example(tolerances=TOLERANCES))
+    room, best = reply["tolerance"], reply["candidates"][0]
+
+    assert room["holds"]
+    assert room["exact"]
+    assert best["worst"] == {"utilisation": 0.9375, "governing_check": "momentary_peak_torque", "status": "suitable"}
+    assert room["growth"] == pytest.approx(1.4, rel=1e-8)  # 200 Nm · (1 + 1.4 · 0.2) is T_M, 256 Nm
+    assert room["deciding"] == [{"path": STOP, "worst": 0.78125}]
+    case = select(api, room["case"])
+    assert case["candidates"][0]["utilisation"] == 0.9375
+    assert room["link"] == case["link"]
+
+
+def test_a_case_that_fails_opens_and_fails(api: TestClient) -> None:
+    reply = select(api, WIDE)
+    room, selected = reply["tolerance"], reply["selected"]
+    case = select(api, room["case"])
+
+    assert not room["holds"]
+    assert room["growth"] == pytest.approx(0.7, rel=1e-8)
+    assert next(one for one in case["candidates"] if one["designation"] == selected)["status"] == "unsuitable"
+
+
+def test_over_tolerance_judges_by_the_worst(api: TestClient) -> None:
+    by_worst = select(api, WIDE | {"requirements": {"ratios": [5], "over_tolerance": True}})
+
+    assert by_worst["selected"] == "HPN-32A-5"
+    rejected = next(one for one in by_worst["candidates"] if one["designation"] == "HPN-20A-5")
+    assert (rejected["status"], rejected["utilisation"]) == ("unsuitable", 280 / 256)
+
+
+def test_the_worst_case_has_a_limit_of_its_own(api: TestClient) -> None:
+    asked = {"ratios": [5], "utilisation": 0.8, "worst_case_utilisation": 1.0}
+    reply = select(api, worked_example(tolerances=TOLERANCES, requirements=asked))
+
+    assert reply["tolerance"]["holds"]
+    assert select(api, reply["tolerance"]["case"])["selected"] == reply["selected"]  # judged by 1, as here
+
+
+def test_a_share_of_samples_is_an_interval(api: TestClient) -> None:
+    share = select(api, worked_example(tolerances=TOLERANCES), "?samples=1000")["tolerance"]["share"]
+    failing = select(api, WIDE, "?samples=1000")["tolerance"]["share"]
+
+    assert (share["samples"], share["failing"]) == (1000, 0)
+    assert share["upper"] == pytest.approx(1 - 0.05 ** (1 / 1000), rel=1e-9)  # about 3 / n
+    assert failing["failing"] / 1000 < failing["upper"] < 1.5 * failing["failing"] / 1000
+
+
+def test_a_line_of_a_batch_says_what_select_says(api: TestClient) -> None:
+    items = [worked_example(tolerances=TOLERANCES), WIDE, worked_example()]
+    lines = api.post(f"{PATH}/batch", json={"applications": items}).json()["results"]
+
+    for item, line in zip(items[:2], lines[:2], strict=True):
+        reply = select(api, item)
+        worst = reply["candidates"][0]["worst"]
+        told = line["holds"], line["worst_utilisation"], line["worst_governing_check"]
+        assert told == (reply["tolerance"]["holds"], worst["utilisation"], worst["governing_check"])
+    assert "holds" not in lines[2]
+
+
+LINKS = {
+    "tol=T:10p": {"torque_Nm": {"percent": 10.0}},
+    "tol=T.2:0.5": {"phases.1.torque_Nm": {"absolute": 0.5}},
+    "tol=tp:0p/15p": {"pause_s": {"minus": {"percent": 0.0}, "plus": {"percent": 15.0}}},
+    "tol=T:10p&tol=n:5p": {"torque_Nm": {"percent": 10.0}, "speed_rpm": {"percent": 5.0}},
+}
+EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&i=5"
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_a_link_has_tolerances_and_comes_back_to_the_byte(link: str) -> None:
+    form = link_reader.parse(pairs_of(f"{EXAMPLE}&{link}"))
+
+    assert form.application is not None
+    assert form.application.model_dump(exclude_none=True)["tolerances"] == LINKS[link]
+    assert to_link(form.application) == f"/?{EXAMPLE}&{link}"
+
+
+def test_a_link_of_a_motion_has_the_tolerance_of_a_move() -> None:
+    of_move, of_mechanism = "motion.moves.1.external_torque_Nm", "motion.mechanism.inertia_kgm2"
+    tolerances = {of_mechanism: {"percent": 5.0}, of_move: {"absolute": 2.0}}
+    asked = Application.model_validate({"duty_cycle": {"motion": TURNING}, "tolerances": tolerances})
+    link = to_link(asked)
+
+    assert link.endswith("&tol=J:5p&tol=mx.2:2")
+    assert link_reader.parse(pairs_of(link[2:])).application == asked
+
+
+WRONG = ["T", "T:", "T.0:1", "X:1p", "T:1p&tol=T:2p", "n:100p", "T.9:1", "J:1p"]
+
+
+@pytest.mark.parametrize("link", WRONG)
+def test_a_tolerance_without_sense_answers_422_beside_the_form(api: TestClient, link: str) -> None:
+    reply = api.get(f"/?{EXAMPLE}&tol={link}")
+
+    assert reply.status_code == 422
+    assert 'name="tol"' in reply.text
+
+
+def test_the_page_says_whether_the_gear_holds_and_keeps_the_tolerance(api: TestClient) -> None:
+    holds, fails = (api.get(f"/?{EXAMPLE}&Tk=200&tol=Tk:{percent}p").text for percent in (20, 40))
+
+    assert "Holds over the whole tolerance: Load limit 3: momentary peak torque at most at 93.75" in holds
+    assert "Fails inside the tolerance: Load limit 3: momentary peak torque reaches 109.4" in fails
+    assert "Open that case" in fails
+    assert '<input type="hidden" name="tol" value="Tk:20p">' in holds
+
+
+def test_a_saved_selection_keeps_its_tolerances(api: TestClient) -> None:
+    saved = api.post("/api/v1/selections", json={"application": WIDE})
+    kept = api.get(saved.headers["Location"]).json()
+
+    assert kept["result"]["tolerance"]["holds"] is False
+    assert kept["application"]["tolerances"]["pause_s"] == {"percent": 50}
+    assert api.get(f"/selections/{saved.json()['id']}").status_code == 200
