@@ -137,10 +137,20 @@ def test_the_saved_page_has_the_chart_of_the_cycle_the_envelope_and_the_life_of_
         assert "Add a load" not in bearing
 
 
-def test_the_page_of_a_gear_has_the_same_drawing(client: TestClient) -> None:
+@pytest.mark.parametrize(("own", "thin"), [(1, {1.2, 1.5}), (1.2, {1, 1.5}), (1.3, {1, 1.2, 1.5})])
+def test_the_page_of_a_gear_draws_each_curve_of_the_api_once(client: TestClient, own: float, thin: set[float]) -> None:
+    """The one asked for is the strong line, also where it is 1, 1.2 or 1.5."""
+    page = client.get(f"/catalogue/HPN-20A-5?at_n=900&at_fw={own}").text
+    asked = {"load_coefficient": own, "speed_rpm": 900}
+    curves = client.get("/api/v1/bearing-envelopes/20A", params=asked).json()["curves"]
+
+    assert {curve["load_coefficient"] for curve in curves} == {own, *thin}
+    assert page.count('class="line limit"') == 1
+    assert page.count('class="line coefficient"') == len(thin)
+
+
+def test_the_page_of_a_gear_says_its_basis_and_draws_nothing_without_limits(client: TestClient) -> None:
     page = client.get("/catalogue/HPN-20A-5").text
-    assert page.count('class="line coefficient"') == 3
-    assert 'class="line limit"' in page
     assert "Basis: interpolated between the two published limits" in page
     assert 'class="line' not in client.get("/catalogue/HPN-40A-5").text
 
