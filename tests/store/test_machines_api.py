@@ -283,6 +283,7 @@ def test_numbers_are_never_used_again_and_bring_an_axis_back(client: TestClient)
 
 def test_axes_are_added_once_with_a_key(client: TestClient) -> None:
     place, key = save(client), {"Idempotency-Key": "add"}
+    key["If-Match"] = client.get(place).headers["etag"]  # of the state before, which the retry names, too
     first, again = (client.post(f"{place}/axes", json={"axes": AXES}, headers=key) for _ in range(2))
     assert first.json() == again.json() == {"numbers": [4, 5, 6]}
     assert len(read(client, place)["axes"]) == 6

@@ -75,6 +75,9 @@ async def change(
     if made.is_of_document:
         values["version"] = documents.c.version + 1
     values["numbers"] = found.numbers + len(numbers)
+    if found.saved is None:  # what nobody has saved is bounded in bytes
+        own = select(func.coalesce(func.sum(func.length(axes.c.application)), 0)).where(axes.c.document == id)
+        values["bytes"] = own.scalar_subquery()
     await connection.execute(update(documents).where(documents.c.id == id).values(values))
     await recount(connection, id, now)
     await _require_within(connection, id, limits)

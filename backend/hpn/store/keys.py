@@ -39,12 +39,20 @@ async def take(connection: AsyncConnection, key: str, digest: str, document: str
     The insertion waits for any other transaction that has the key in hand. Raises KeyReusedError and KeySpentError; the
     caller then rolls the transaction back.
     """
-    hashed, c = hash_of(key), idempotency_keys.c
-    row = {"key_sha256": hashed, "digest": digest, "document": document}
+    row = {"key_sha256": hash_of(key), "digest": digest, "document": document}
     is_new = await insert_new(connection, idempotency_keys, row)
-    found = select(c.digest, c.document, c.part, c.deleted).where(c.key_sha256 == hashed)
+    made = await made_by(connection, key, digest)
+    return None if is_new else made
+
+
+async def made_by(connection: AsyncConnection, key: str, digest: str) -> Made | None:
+    """What a key has made; None for a new one. Raises as `take`."""
+    c = idempotency_keys.c
+    found = select(c.digest, c.document, c.part, c.deleted).where(c.key_sha256 == hash_of(key))
     held = (await connection.execute(found)).one_or_none()
-    if held is None or held.deleted is not None:
+    if held is None:
+        return None
+    if held.deleted is not None:
         raise KeySpentError(
             "the selection saved under this idempotency key has been deleted; take a new key to save it anew"
         )
@@ -52,7 +60,7 @@ async def take(connection: AsyncConnection, key: str, digest: str, document: str
         raise KeyReusedError(
             "this idempotency key was used before, with other content; take a new key for a new selection"
         )
-    return None if is_new else Made(held.document, held.part)
+    return Made(held.document, held.part)
 
 
 async def keep_part(connection: AsyncConnection, key: str, part: str) -> None:

@@ -16,7 +16,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import UnreadableCopyError, read_copy
 from hpn.store.changes import Change, Limits, change, freeze, read_revision, read_revisions
 from hpn.store.errors import StoreError, StoreUnavailableError
-from hpn.store.keys import Once
+from hpn.store.keys import Made, Once, made_by
 from hpn.store.machines import (
     WantedLines,
     add_machine,
@@ -227,6 +227,11 @@ class Store(Transactions):
         Raises ExcessError beyond the limits, and for a key as `save`.
         """
         return await self._write(lambda connection: change(connection, id, made, limits, once))
+
+    async def made_by(self, once: Once) -> Made | None:
+        """What an idempotency key has made; None for a new one. Raises as `save`."""
+        async with self._reading() as connection:
+            return await made_by(connection, once.key, once.digest)
 
     async def freeze(
         self, id: str, version: int, draft: RevisionDraft, limits: Limits, once: Once | None = None

@@ -15,6 +15,7 @@ from hpn.documents.answers import Asked, answers
 from hpn.documents.axis import MOST_AXES, MOST_PHASES, MOST_REVISIONS
 from hpn.store import Change, ExcessError, KeyReusedError, KeySpentError, Limits, Machine, Once, SavedAxis
 from hpn.store.records import Answer, DocumentKind
+from hpn.store.writing import order_of
 from hpn.web.columns import columns_of, common_of, resolved
 from hpn.web.door.access import key_needed
 from hpn.web.door.conditions import etag_of, idempotency_key, require_match
@@ -98,6 +99,8 @@ async def apply(
     `make` raises Problem where it can't be made, 412 where `If-Match` names another state. Raises Problem 403, 404,
     410, 422, and 503 where others are faster again and again.
     """
+    if once is not None and (before := await made_before(request, once)) is not None:
+        return order_of(before)
     for _ in range(TRIES):
         machine = await editable(request, id, numbers)
         few = len(machine.items) <= FEW_AXES
@@ -108,6 +111,12 @@ async def apply(
             numbers_done: list[int] = done
             return numbers_done
     raise Problem.later("others are changing this machine at the moment; try again", RETRY_SECONDS)
+
+
+async def made_before(request: Request, once: Once) -> str | None:
+    """What an idempotency key has made of its document, whatever state the retry names; Problem 422 and 410."""
+    made = await guarded(request.app.state.store.made_by(once))
+    return None if made is None else made.part or "[]"
 
 
 async def guarded(writing: Any) -> Any:

@@ -26,7 +26,18 @@ from hpn.web.door.conditions import etag_of
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.machines import LIMITS, RETRY_SECONDS, TRIES, editable, found, guarded, of_today, once_of, require_document
+from hpn.web.machines import (
+    LIMITS,
+    RETRY_SECONDS,
+    TRIES,
+    editable,
+    found,
+    guarded,
+    made_before,
+    of_today,
+    once_of,
+    require_document,
+)
 from hpn.words.wording import N_, Sentence
 
 Label = Annotated[str, Path(max_length=20, description="Label of the revision, in any case.")]
@@ -58,6 +69,8 @@ async def save_revision(request: Request, id: schemas.Id) -> Response:
     """Freezes the working copy under a label: own, inherited and resolved values and answers. It never changes."""
     once = once_of(request, body := await read_body(request))
     block = parsed(RevisionBlock, body)
+    if once is not None and (label := await made_before(request, once)) is not None:
+        return await _kept_revision(request, id, label)
     for _ in range(TRIES):
         machine = await editable(request, id)
         require_document(request, machine)
@@ -71,10 +84,14 @@ async def save_revision(request: Request, id: schemas.Id) -> Response:
             raise Problem(409, Sentence(TAKEN, {"label": block.label})) from None
         if label is not None:
             note(request, machine=id)
-            line, content = await _revision(request, id, label)
-            headers = {"Location": f"{ADDRESS}/{id}/revisions/{label}", "ETag": etag_of(content)}
-            return JSONBytes(encode(replies.revision(line)), 201, headers)
+            return await _kept_revision(request, id, label)
     raise Problem.later("others are changing this machine at the moment; try again", RETRY_SECONDS)
+
+
+async def _kept_revision(request: Request, id: str, label: str) -> Response:
+    line, content = await _revision(request, id, label)
+    headers = {"Location": f"{ADDRESS}/{id}/revisions/{line.label}", "ETag": etag_of(content)}
+    return JSONBytes(encode(replies.revision(line)), 201, headers)
 
 
 def _frozen(machine: Machine, block: RevisionBlock, catalogue: Catalogue) -> RevisionDraft:
