@@ -66,6 +66,8 @@ def test_the_example_for_curl(example: Example, tmp_path: Path) -> None:
     assert json.loads(saved + "}")["url"].startswith("/selections/")
     assert second.startswith(saved)  # the same selection, by its Idempotency-Key
     assert [selection["reference"] for selection in json.loads(listed)["selections"]] == ["4711-07"]
+    gears = json.loads((tmp_path / "gears.json").read_text())["gears"]
+    assert sorted((gear["quantity"], gear["axes"]) for gear in gears) == [(1, [2]), (4, [1])]
     results = [json.loads(line) for line in (tmp_path / "results.ndjson").read_text().splitlines()]
     assert [(line["reference"], line["status"]) for line in results] == [("axis-1", "ok"), ("axis-2", "ok")]
     answers = (tmp_path / "answers.csv").read_text().splitlines()
