@@ -53,6 +53,8 @@ VALUES: dict[str, list[Any]] = {
     "requirements.position_error_mm": [2.0],
     "requirements.position_radius_mm": [250.0],
     "requirements.position_error_at": ["cycle", "rest"],
+    "requirements.worst_case_utilisation": [0.95],
+    "requirements.over_tolerance": [True, False],
 }
 """Every field that the contract lets be common, with values of it; some equal the default."""
 
