@@ -7,6 +7,8 @@
 - `answers`: `answers(axes, catalogue)`, the `AxisAnswer` of many axes in one evaluation
 - `revision`: labels of revisions, and `Frozen`, everything of a document as it was, in packed bytes
 - `gears`: the list of gears to order, with quantities and masses
+- `summary`: `summary_of(document, catalogue)`, what there is of a document in brief
+- `differences`: `differences(one, other)` of two documents axis by axis, and `today(document, catalogue)`
 - `kinds`: `kinds_of(axes, catalogue)`, what fewer kinds of gears weigh and which axes change
 
 Nothing here knows the store or the web. `hpn.store` keeps documents as rows (`records.py`), and `hpn.web.columns` turns

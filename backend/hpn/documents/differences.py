@@ -1,138 +1,252 @@
-"""Differences between two states of a document, axis by axis: what was asked, and what came of it."""
+"""Differences of two documents as they were, axis by axis: inputs, verdicts and figures.
 
-import json
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Annotated, Any, Literal
+Axes are matched by their numbers, inputs by their places, and numbers are the same within the tolerance of the
+comparer. An input that both axes inherit stands among the common ones alone.
+"""
 
-from msgspec import structs
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Any, Literal, NamedTuple
+
+import msgspec
+from msgspec import Raw, structs
 from pydantic import Field
 
+from hpn.application.faults import pointer
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import Asked, answers
+from hpn.documents.answers import Asked, AxisAnswer, AxisStatus, answers
 from hpn.documents.merge import resolve
 from hpn.documents.revision import Frozen, FrozenAxis
-from hpn.explain.comparison import is_same
+from hpn.documents.summary import Summary, gear_of, summary_of
+from hpn.explain.comparison import aligned, is_same
 from hpn.words.reply import Reply
 
-BLOCK = ("title", "reference", "author", "note")
-LABELS = ("name", "quantity", "note", "ordering_code", "without")
 VERDICTS = ("status", "selected", "designation", "governing_check")
-FIGURES = (
-    *("utilisation", "life_L10_h", "shortest_life_h", "shortest_life_of", "natural_frequency_Hz"),
-    *("motor_torque_limit_Nm", "weight_kg", "suitable", "runner_up", "average_torque_Nm", "not_asked"),
-)
+NOT_COMPARED = (*("engine_version", "catalogue_version"), *("faults", "not_asked", "unknown"))
+"""Fields of an answer without a difference of their own: versions, and what follows from the inputs."""
+
+FIGURES = tuple(name for name in AxisAnswer.__struct_fields__ if name not in (*VERDICTS, *NOT_COMPARED))
+
+OWN = ("name", "quantity", "note", "ordering_code")
+TITLE_BLOCK = ("title", "reference", "author", "note")
+
+DEEPEST = 6
+"""Depth of an application; what stands deeper is compared as a whole."""
+
+FROM_TO = {"value_from": "from", "value_to": "to"}
+SIDES = {"side_from": "from", "side_to": "to"}
+
+Change = Literal["changed", "added", "removed"]
 
 
-class Cell(Reply, frozen=True, rename={"before": "from", "after": "to"}):
-    """One value that differs."""
+class DifferentInput(Reply, frozen=True, rename=FROM_TO):
+    """One input that two documents give differently; null where one lacks it."""
 
-    path: Annotated[str, Field(description="Path of the value.")]
-    before: Annotated[Any, Field(description="Value of the first state; null where it has none.")]
-    after: Annotated[Any, Field(description="Value of the second state; null where it has none.")]
+    pointer: Annotated[str, Field(description="JSON pointer into the axis, of a common value into the document.")]
+    value_from: Annotated[Any, Field(description="Value in the first document.")]
+    value_to: Annotated[Any, Field(description="Value in the second.")]
+    inherited_from: Annotated[bool, Field(description="True where the first value is the machine’s.")] = False
+    inherited_to: Annotated[bool, Field(description="True where the second value is.")] = False
 
 
-Cells = tuple[Cell, ...]
+class DifferentAnswer(Reply, frozen=True, rename=FROM_TO):
+    """One verdict or figure that differs."""
+
+    field: Annotated[str, Field(description="Name of the field of the answer.")]
+    value_from: Annotated[Any, Field(description="Value in the first document.")]
+    value_to: Annotated[Any, Field(description="Value in the second.")]
 
 
-class AxisDifference(Reply, frozen=True):
-    """One axis that differs."""
+class AxisSide(Reply, frozen=True):
+    """An axis of one document in brief."""
+
+    gear: Annotated[str | None, Field(description="Designation of its gear; null without one.")]
+    designation: Annotated[str | None, Field(description="Gear that the figures are of: its own, or the nearest.")]
+    status: Annotated[AxisStatus, Field(description="Verdict on that gear.")]
+    governing_check: Annotated[str | None, Field(description="Code of the check closest to its limit.")]
+    utilisation: Annotated[float | None, Field(description="Utilisation of that gear.")]
+
+    @classmethod
+    def of(cls, axis: FrozenAxis) -> "AxisSide":
+        """An axis in brief."""
+        answer = axis.answer
+        return cls(gear_of(axis), answer.designation, answer.status, answer.governing_check, answer.utilisation)
+
+
+class DifferentAxis(Reply, frozen=True, rename=SIDES):
+    """An axis that differs, or that only one document has."""
 
     number: Annotated[int, Field(description="Number of the axis.")]
-    name: Annotated[str | None, Field(description="Its name, in the second state where it is there.")]
-    change: Annotated[Literal["added", "removed", "changed"], Field(description="In both states, or in one.")]
-    inputs: Annotated[Cells, Field(description="Inputs that differ, resolved ones by their paths.")]
-    verdicts: Annotated[Cells, Field(description="Verdict, gear and governing check, where they differ.")]
-    figures: Annotated[Cells, Field(description="Figures that differ by more than 1e-12 of themselves.")]
+    name: Annotated[str | None, Field(description="Its name, in the second document where that has it.")]
+    change: Annotated[Change, Field(description="Axis of both documents, of the second or of the first alone.")]
+    side_from: Annotated[AxisSide | None, Field(description="The axis in the first document.")]
+    side_to: Annotated[AxisSide | None, Field(description="The axis in the second.")]
+    effect: Annotated[float | None, Field(description="Increase of its utilisation; null where one has none.")]
+    inputs: Annotated[tuple[DifferentInput, ...], Field(description="Inputs that differ.")]
+    verdicts: Annotated[tuple[DifferentAnswer, ...], Field(description="Verdicts that differ.")]
+    figures: Annotated[tuple[DifferentAnswer, ...], Field(description="Figures that differ.")]
+
+    @property
+    def lost_its_gear(self) -> bool:
+        """True for an axis without a suitable gear that was suitable, or is new."""
+        was = self.side_from is None or self.side_from.status == "suitable"
+        return self.side_to is not None and self.side_to.status != "suitable" and was
+
+    @property
+    def has_another_gear(self) -> bool:
+        """True where both documents have the axis, and its gears differ."""
+        return bool(self.side_from and self.side_to and self.side_from.gear != self.side_to.gear)
 
 
-class DocumentDifferences(Reply, frozen=True):
-    """Everything that differs, axes with another verdict first; what is the same is left out."""
+class DocumentSide(Reply, frozen=True):
+    """One of the documents: the label of a revision, `now` or `today`, and what there is of it."""
 
-    title_block: Annotated[Cells, Field(description="Title block.")]
-    common: Annotated[Cells, Field(description="Common values by their paths.")]
-    axes: Annotated[tuple[AxisDifference, ...], Field(description="Axes that differ.")]
-    same: Annotated[int, Field(description="Number of axes that are the same.")]
+    label: Annotated[str, Field(description="Label.")]
+    summary: Annotated[Summary, Field(description="The document in brief.")]
 
 
-def differences(one: Frozen, other: Frozen) -> DocumentDifferences:
-    """Differences from one state of a document to another."""
-    before, after = ({axis.number: axis for axis in state.axes} for state in (one, other))
-    pairs = [(before.get(number), after.get(number)) for number in dict.fromkeys([*after, *before])]
-    found = [each for each in (_axis(*pair) for pair in pairs) if each is not None]
+class DocumentDifferences(Reply, frozen=True, rename=SIDES):
+    """Differences of two documents: axes without a suitable gear first, then those with another, then by effect."""
+
+    side_from: Annotated[DocumentSide, Field(description="The first document.")]
+    side_to: Annotated[DocumentSide, Field(description="The second.")]
+    common: Annotated[tuple[DifferentInput, ...], Field(description="Title block and common values that differ.")]
+    order: Annotated[bool, Field(description="True where the axes of both stand in another order.")]
+    axes: Annotated[tuple[DifferentAxis, ...], Field(description="Axes that differ.")]
+    same: Annotated[int, Field(description="Number of axes of both that do not differ.")]
+
+
+class Compared(NamedTuple):
+    """A document to be compared: its label, what is in it, and the catalogue of its answers where that is kept."""
+
+    label: str
+    document: Frozen
+    catalogue: Catalogue | None
+
+
+def differences(one: Compared, other: Compared) -> DocumentDifferences:
+    """Differences of two documents."""
+    before, after = ({axis.number: axis for axis in side.document.axes} for side in (one, other))
+    pairs = [(number, old, new) for number, (old, new) in aligned(before, after)]
+    found = [axis for number, old, new in pairs if (axis := _axis(number, old, new))]
+    both = [number for number in before if number in after]
     return DocumentDifferences(
-        title_block=_cells(
-            {name: getattr(one, name) for name in BLOCK}, {name: getattr(other, name) for name in BLOCK}
-        ),
-        common=_cells(dict(_leaves(one.common)), dict(_leaves(other.common))),
-        axes=tuple(sorted(found, key=lambda axis: (not axis.verdicts, axis.change == "changed"))),
+        side_from=DocumentSide(one.label, summary_of(one.document, one.catalogue)),
+        side_to=DocumentSide(other.label, summary_of(other.document, other.catalogue)),
+        common=tuple(_common(one.document, other.document)),
+        order=both != [number for number in after if number in before],
+        axes=tuple(sorted(found, key=_weight)),
         same=len(pairs) - len(found),
     )
 
 
-def _block(state: Frozen) -> dict[str, Any]:
-    return {name: getattr(state, name) for name in BLOCK}
+def today(document: Frozen, catalogue: Catalogue) -> Frozen:
+    """A document answered again by this engine and a catalogue; its inputs stay as they were resolved."""
+    asked = [Asked(resolve(_json(axis.resolved), {}), axis.ordering_code) for axis in document.axes]
+    axes = [
+        structs.replace(axis, answer=structs.replace(answer, not_asked=axis.answer.not_asked))
+        for axis, answer in zip(document.axes, answers(asked, catalogue), strict=True)
+    ]
+    return structs.replace(document, axes=tuple(axes))
 
 
-def today(state: Frozen, catalogue: Catalogue) -> Frozen:
-    """A state whose axes have the answers of today's engine and catalogue."""
-    asked = [Asked(resolve(json.loads(bytes(axis.resolved)), {}), axis.ordering_code) for axis in state.axes]
-    found = answers(asked, catalogue)
-    axes = (
-        structs.replace(axis, answer=structs.replace(now, not_asked=axis.answer.not_asked))
-        for axis, now in zip(state.axes, found, strict=True)
+def _weight(axis: DifferentAxis) -> tuple[int, float, int]:
+    kind = 0 if axis.lost_its_gear else 1 if axis.has_another_gear else 2 if axis.change != "changed" else 3
+    unknown = any(each.field == "utilisation" for each in axis.figures)
+    effect = (math.inf if unknown else 0.0) if axis.effect is None else abs(axis.effect)
+    return kind, -effect, axis.number
+
+
+# --- Axes -------------------------------------------------------------------------------------------------------------
+
+
+def _axis(number: int, old: FrozenAxis | None, new: FrozenAxis | None) -> DifferentAxis | None:
+    """Differences of an axis; None for one without."""
+    inputs, answered = list[DifferentInput](), list[DifferentAnswer]()
+    if old is not None and new is not None:
+        inputs, answered = list(_inputs(old, new)), list(_answered(old.answer, new.answer))
+        if not inputs and not answered:
+            return None
+    sides = [None if axis is None else AxisSide.of(axis) for axis in (old, new)]
+    used = [side.utilisation if side else None for side in sides]
+    known = new or old
+    return DifferentAxis(
+        number=number,
+        name=known and known.name,
+        change="added" if old is None else "removed" if new is None else "changed",
+        side_from=sides[0],
+        side_to=sides[1],
+        effect=None if used[0] is None or used[1] is None else used[1] - used[0],
+        inputs=tuple(inputs),
+        verdicts=tuple(each for each in answered if each.field in VERDICTS),
+        figures=tuple(each for each in answered if each.field in FIGURES),
     )
-    return structs.replace(state, axes=tuple(axes))
 
 
-def _axis(before: FrozenAxis | None, after: FrozenAxis | None) -> AxisDifference | None:
-    there = after or before
-    assert there is not None
-    inputs = _cells(_inputs(before), _inputs(after))
-    unknown = {name for axis in (before, after) if axis for name in axis.answer.unknown}
-    verdicts, figures = (
-        _cells(_answer(before, names, unknown), _answer(after, names, unknown)) for names in (VERDICTS, FIGURES)
-    )
-    if before is not None and after is not None and not (inputs or verdicts or figures):
-        return None
-    change: Literal["added", "removed", "changed"] = "changed"
-    if before is None or after is None:
-        change = "added" if before is None else "removed"
-    return AxisDifference(there.number, there.name, change, inputs, verdicts, figures)
+def _answered(old: AxisAnswer, new: AxisAnswer) -> Iterator[DifferentAnswer]:
+    """Verdicts and figures that differ, without those that the version of one answer did not know."""
+    unknown = {*getattr(old, "unknown", ()), *getattr(new, "unknown", ())}
+    for name in (*VERDICTS, *FIGURES):
+        one, other = getattr(old, name), getattr(new, name)
+        if name not in unknown and not is_same(one, other):
+            yield DifferentAnswer(name, one, other)
 
 
-def _inputs(axis: FrozenAxis | None) -> dict[str, Any]:
-    if axis is None:
-        return {}
-    labels = {name: getattr(axis, name) for name in LABELS}
-    return labels | dict(_leaves(json.loads(bytes(axis.resolved)), "application"))
+def _inputs(old: FrozenAxis, new: FrozenAxis) -> Iterator[DifferentInput]:
+    """Inputs of an axis that differ, by value or in being its own."""
+    for name in OWN:
+        if getattr(old, name) != getattr(new, name):
+            yield DifferentInput(f"/{name}", getattr(old, name), getattr(new, name))
+    if {*old.without} != {*new.without}:
+        yield DifferentInput("/without", list(old.without), list(new.without))
+    if bytes(old.application) == bytes(new.application) and bytes(old.resolved) == bytes(new.resolved):
+        return
+    own = [{place for place, _ in _values(_json(axis.application))} for axis in (old, new)]
+    sides = (dict(_values(_json(axis.resolved))) for axis in (old, new))
+    for place, (one, other) in aligned(*sides):
+        inherited = [value is not None and place not in mine for value, mine in zip((one, other), own, strict=True)]
+        alike = is_same(one, other)
+        if (
+            (alike and inherited[0] == inherited[1])
+            or all(inherited)
+            or (not alike and _is_common(one, other, inherited))
+        ):
+            continue
+        yield DifferentInput(pointer(("resolved", *place)), one, other, *inherited)
 
 
-def _answer(axis: FrozenAxis | None, names: Sequence[str], unknown: Collection[str]) -> dict[str, Any]:
-    """Part of an answer, without the figures of which the version of one side knew nothing."""
-    return {name: getattr(axis.answer, name) for name in names if axis and name not in unknown}
+def _is_common(one: Any, other: Any, inherited: Sequence[bool]) -> bool:
+    """True for a value that one document inherits and the other lacks altogether."""
+    return any(inherited) and (one is None or other is None)
 
 
-def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Values inside a value by their paths with dots."""
-    if isinstance(value, Mapping) and value:
-        for name, each in value.items():
-            yield from _leaves(each, f"{path}.{name}" if path else str(name))
-    elif isinstance(value, list) and any(isinstance(each, Mapping) for each in value):
-        for place, each in enumerate(value):
-            yield from _leaves(each, f"{path}.{place}")
-    elif path:
-        yield path, value
+def _common(old: Frozen, new: Frozen) -> Iterator[DifferentInput]:
+    for name in TITLE_BLOCK:
+        if getattr(old, name) != getattr(new, name):
+            yield DifferentInput(f"/{name}", getattr(old, name), getattr(new, name))
+    for place, (one, other) in aligned(dict(_values(old.common)), dict(_values(new.common))):
+        if not is_same(one, other):
+            yield DifferentInput(pointer(("common", *place)), one, other)
 
 
-def _cells(before: Mapping[str, Any], after: Mapping[str, Any]) -> Cells:
-    """Values that differ."""
-    names = dict.fromkeys([*after, *before])
-    pairs = ((name, before.get(name), after.get(name)) for name in names)
-    return tuple(Cell(*pair) for pair in pairs if not _same(pair[1], pair[2]))
+# --- Values -----------------------------------------------------------------------------------------------------------
 
 
-def _same(one: Any, other: Any) -> bool:
-    try:
-        return is_same(one, other)
-    except OverflowError:  # a whole number that no float holds, of an axis that is open for it
-        return False
+def _json(raw: Raw) -> Mapping[str, Any]:
+    found = msgspec.json.decode(raw)
+    return found if isinstance(found, Mapping) else {}
+
+
+Place = tuple[str | int, ...]
+
+
+def _values(value: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
+    """Places of all values in a part of an application; a list of plain values, such as ratios, is one."""
+    if isinstance(value, Mapping) and len(place) < DEEPEST:
+        for name, part in value.items():
+            yield from _values(part, (*place, name))
+    elif isinstance(value, list) and len(place) < DEEPEST and any(isinstance(item, Mapping) for item in value):
+        for index, item in enumerate(value):
+            yield from _values(item, (*place, index))
+    elif value is not None:
+        yield place, value

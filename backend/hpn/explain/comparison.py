@@ -37,8 +37,14 @@ def is_number(value: Any) -> bool:
 
 def is_same(one: Any, other: Any, room: float = 0.0) -> bool:
     """True for values that are equal, numbers to rounding: another processor has other last bits."""
-    numbers = is_number(one) and is_number(other)
-    return bool(one == other or (numbers and math.isclose(one, other, rel_tol=TOLERANCE, abs_tol=room)))
+    return bool(one == other or (is_number(one) and is_number(other) and _is_close(one, other, room)))
+
+
+def _is_close(one: float, other: float, room: float) -> bool:
+    try:
+        return math.isclose(one, other, rel_tol=TOLERANCE, abs_tol=room)
+    except OverflowError:  # an integer beyond floats, which an open axis may have
+        return False
 
 
 def aligned(*sides: Mapping[K, V]) -> Iterator[tuple[K, tuple[V | None, ...]]]:

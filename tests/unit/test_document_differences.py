@@ -1,0 +1,173 @@
+"""Differences of two documents: inputs own and common, verdicts, figures, and the order of what differs."""
+
+import copy
+
+import msgspec
+import pytest
+from msgspec import structs
+
+from hpn.catalogue import Catalogue
+from hpn.documents.differences import Compared, DifferentAxis, DocumentDifferences, differences, today
+from hpn.documents.revision import Frozen
+from hpn.documents.summary import summary_of
+from tests.build import Json, cycle, phase, worked_example
+from tests.conftest import Supplement
+from tests.machines import COMMON, axis, frozen, packing_line
+
+ALONE = {"requirements": {"utilisation": 0.9}}
+
+
+def compared(one: Frozen, other: Frozen, catalogue: Catalogue) -> DocumentDifferences:
+    return differences(Compared("A", one, catalogue), Compared("B", other, catalogue))
+
+
+def of_one(before: Json, after: Json, catalogue: Catalogue, common: Json | None = None) -> DifferentAxis:
+    """The difference of the one axis of two documents."""
+    sides = (frozen([axis], catalogue, common) for axis in (before, after))
+    (found,) = compared(*sides, catalogue).axes
+    return found
+
+
+def inputs_of(found: DifferentAxis) -> dict[str, tuple[object, object]]:
+    return {each.pointer: (each.value_from, each.value_to) for each in found.inputs}
+
+
+def test_the_same_document_has_no_difference(catalogue: Catalogue) -> None:
+    line = frozen(packing_line(), catalogue, COMMON)
+    found = compared(line, frozen(packing_line(), catalogue, COMMON), catalogue)
+    assert (found.common, found.axes, found.same, found.order) == ((), (), 40, False)
+    assert compared(line, today(line, catalogue), catalogue).axes == ()
+
+
+def test_a_changed_phase_is_one_input_and_says_what_it_did(catalogue: Catalogue) -> None:
+    before, after = axis("Turret", worked_example()), axis("Turret", worked_example())
+    after["application"]["duty_cycle"]["phases"][1]["torque_Nm"] = 38.0
+
+    found = of_one(before, after, catalogue)
+
+    assert inputs_of(found) == {"/resolved/duty_cycle/phases/1/torque_Nm": (32, 38.0)}
+    figures = {each.field: (each.value_from, each.value_to) for each in found.figures}
+    assert "average_torque_Nm" in figures and "weight_kg" not in figures
+    assert found.verdicts == () and found.effect == 0.0  # the stop torque decides
+
+
+def test_a_common_value_that_differs_stands_once_and_its_effect_with_each_axis(catalogue: Catalogue) -> None:
+    axes = [axis("a", worked_example()), axis("b", worked_example(requirements={"utilisation": 1.0}))]
+    one, other = (frozen(axes, catalogue, {"requirements": {"utilisation": u}}) for u in (1.0, 0.7))
+
+    found = compared(one, other, catalogue)
+
+    assert [(each.pointer, each.value_from, each.value_to) for each in found.common] == [
+        ("/common/requirements/utilisation", 1.0, 0.7)
+    ]
+    assert [(each.number, each.inputs) for each in found.axes] == [(1, ())]
+    assert found.same == 1
+
+
+def test_a_common_value_that_one_document_lacks_is_no_input_of_its_axes(catalogue: Catalogue) -> None:
+    one, other = (frozen([axis("a", worked_example())], catalogue, common) for common in (None, ALONE))
+    found = compared(one, other, catalogue)
+    assert [each.pointer for each in found.common] == ["/common/requirements/utilisation"]
+    assert all(each.inputs == () for each in found.axes)
+
+
+def test_an_own_value_that_equals_the_common_one_differs_from_an_inherited_one(catalogue: Catalogue) -> None:
+    own = axis("a", worked_example(requirements={"utilisation": 0.9}))
+    found = of_one(own, axis("a", worked_example()), catalogue, ALONE)
+    (only,) = found.inputs
+    assert (only.pointer, only.value_from, only.value_to) == ("/resolved/requirements/utilisation", 0.9, 0.9)
+    assert (only.inherited_from, only.inherited_to) == (False, True)
+
+
+def test_name_quantity_note_code_and_what_does_not_hold_are_inputs(catalogue: Catalogue) -> None:
+    before = axis("a", worked_example(), note="x")
+    after = axis("b", worked_example(), 2, ordering_code="HPN-20A-5", without=["requirements.utilisation"])
+    assert inputs_of(of_one(before, after, catalogue, ALONE)) == {
+        "/name": ("a", "b"),
+        "/quantity": (1, 2),
+        "/note": ("x", None),
+        "/ordering_code": (None, "HPN-20A-5"),
+        "/without": ([], ["requirements.utilisation"]),
+    }
+
+
+def test_other_last_bits_are_no_difference_and_a_relative_ppt_more_is_one(catalogue: Catalogue) -> None:
+    line = frozen([axis("a", worked_example())], catalogue)
+    for factor, count in ((1 + 4e-13, 0), (1 + 4e-12, 1)):
+        (only,) = line.axes
+        life = (only.answer.shortest_life_h or 0.0) * factor
+        other = structs.replace(only, answer=structs.replace(only.answer, shortest_life_h=life))
+        found = compared(line, structs.replace(line, axes=(other,)), catalogue).axes
+        assert len(found) == count
+
+
+def test_lost_gears_come_first_then_other_gears_then_new_axes_then_by_effect(catalogue: Catalogue) -> None:
+    names = ("same", "small", "large", "other", "lost", "removed")
+    before = [
+        axis(name, cycle(phase(10, 100, 1.0), phase(5, 50, 1.0))) | {"number": n} for n, name in enumerate(names, 1)
+    ]
+    after = copy.deepcopy(before)
+    for place, torque in ((1, 10.5), (2, 11.5), (3, 100.0), (4, 9000.0)):
+        after[place]["application"]["duty_cycle"]["phases"][0]["torque_Nm"] = torque
+    after[5] = axis("added", worked_example()) | {"number": 9}
+
+    found = compared(frozen(before, catalogue), frozen(after, catalogue), catalogue)
+
+    assert [each.name for each in found.axes] == ["lost", "other", "removed", "added", "large", "small"]
+    assert [each.change for each in found.axes[2:4]] == ["removed", "added"]
+    assert found.axes[0].lost_its_gear and found.axes[1].has_another_gear and found.same == 1
+    assert found.axes[0].side_to and found.axes[0].side_to.gear is None
+    assert found.side_from.summary.suitable == 6 and found.side_to.summary.suitable == 5
+
+
+def test_an_axis_that_turns_open_and_one_that_is_answered_say_so(catalogue: Catalogue) -> None:
+    whole, lacking = axis("a", worked_example()), axis("a", worked_example())
+    del lacking["application"]["duty_cycle"]["phases"][0]["speed_rpm"]
+    found = of_one(whole, lacking, catalogue)
+    assert {each.field: each.value_to for each in found.verdicts}["status"] == "open"
+    assert found.lost_its_gear and found.effect is None
+    assert inputs_of(found) == {
+        "/resolved/duty_cycle/phases/0/speed_rpm": (whole["application"]["duty_cycle"]["phases"][0]["speed_rpm"], None)
+    }
+
+
+def test_values_that_no_application_has_are_compared_as_they_are(catalogue: Catalogue) -> None:
+    """An open axis keeps what was sent: integers beyond floats, and objects as deep as they are."""
+    deep: Json = {}
+    for _ in range(50):
+        deep = {"in": deep}
+    sides = [worked_example(requirements={"life_h": value}, more=deep | {"x": value}) for value in (10**400, 5)]
+    found = inputs_of(of_one(axis("a", sides[0]), axis("a", sides[1]), catalogue))
+    assert found == {"/resolved/requirements/life_h": (10**400, 5), "/resolved/more/x": (10**400, 5)}
+
+
+def test_another_order_is_said_and_is_no_difference_of_an_axis(catalogue: Catalogue) -> None:
+    line = frozen([axis("a", worked_example()), axis("b", worked_example())], catalogue)
+    found = compared(line, structs.replace(line, axes=line.axes[::-1]), catalogue)
+    assert (found.order, found.axes) == (True, ())
+
+
+def test_today_asks_todays_catalogue_and_keeps_what_was_resolved(
+    catalogue: Catalogue, supplemented: Supplement
+) -> None:
+    line = frozen([axis("a", worked_example()), axis("b", {})], catalogue, ALONE, title="Line")
+    later = msgspec.json.decode(msgspec.json.encode(line), type=Frozen)
+    other = supplemented(weights="size,stages,weight_kg,source\n20A,1,3.6,p\n")
+    found = differences(Compared("A", later, catalogue), Compared("today", today(later, other), other))
+    (only,) = found.axes
+    assert (only.number, only.inputs) == (1, ())
+    assert [(each.field, each.value_to) for each in only.figures] == [("weight_kg", 3.6)]
+    assert found.side_to.summary.catalogue_versions == (other.version,)
+
+
+def test_the_summary_counts_what_the_list_of_gears_counts(catalogue: Catalogue) -> None:
+    line = frozen(packing_line(), catalogue, COMMON)
+    summary = summary_of(line, catalogue)
+    gears = [each for each in line.axes if each.ordering_code or each.answer.selected]
+    weights = [each.quantity * (each.answer.weight_kg or 0.0) for each in gears]
+    assert summary.weight_kg == pytest.approx(sum(weights), rel=1e-12)
+    assert summary.gears == sum(each.quantity for each in gears)
+    assert summary.axes == 40 == summary.suitable + summary.unsuitable + summary.unrated + summary.open
+    assert summary.open == 1
+    of_most = next(each for each in line.axes if each.number == summary.utilisation_axis)
+    assert of_most.answer.utilisation == summary.utilisation
