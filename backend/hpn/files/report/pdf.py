@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Mapping, Set
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,10 @@ from hpn.files.report.content import content
 from hpn.installed import data_folder
 from hpn.words.reader import Reader
 
-TEMPLATE = Path(__file__).parent / "report.typ"
+FOLDER = Path(__file__).parent
+LOOK = ("look.typ", "selection.typ")
+"""Look of every report, and the parts of a selection; the template of a report stands behind them."""
+
 FONTS = data_folder("frontend/dist/paper")
 FIRST_FONTS = ("HPN Sans", "Noto Sans Arabic", "DejaVu Sans Mono", "Noto Sans", "Noto Sans SC")
 """Fonts that are asked first for a character; then every other Noto font."""
@@ -28,16 +32,20 @@ _ESCAPED = re.compile(r"\\u\{([0-9a-f]+)\}")
 
 
 def pdf(export: Export, reader: Reader) -> bytes:
-    """The report on an export.
+    """The report on an export."""
+    return printed("report.typ", content(export, reader), export.heading.title.strip(), export.created)
+
+
+def printed(template: str, data: Mapping[str, Any], title: str, created: datetime | None) -> bytes:
+    """The report that a template makes of data.
 
     PDF/UA refuses a text that no font can show, so what typst names as such is replaced, and a note says what it was.
     """
-    data, title = content(export, reader), export.heading.title.strip()
-    seconds = int(export.created.timestamp()) if export.created else 0
+    seconds = int(created.timestamp()) if created else 0
     unshown: set[str] = set()
     while True:
         try:
-            return _compiled(_without(unshown, data), title, seconds)
+            return _compiled(template, _without(unshown, data), title, seconds)
         except typst.TypstError as error:
             found = _unshown(error)
             if found <= unshown:
@@ -47,10 +55,10 @@ def pdf(export: Export, reader: Reader) -> bytes:
             _forget()
 
 
-def _compiled(data: Mapping[str, Any], title: str, seconds: int) -> bytes:
+def _compiled(template: str, data: Mapping[str, Any], title: str, seconds: int) -> bytes:
     families = dict.fromkeys([*FIRST_FONTS, *(name for name in _fonts().families() if name.startswith("Noto"))])
     compiler = typst.Compiler(
-        TEMPLATE.read_bytes(),
+        b"\n".join((FOLDER / name).read_bytes() for name in (*LOOK, template)),
         font_paths=_fonts(),
         ignore_system_fonts=True,
         sys_inputs={"data": json.dumps({**data, "fonts": [*families]}), "title": title},
