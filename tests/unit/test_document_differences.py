@@ -7,7 +7,7 @@ import pytest
 from msgspec import structs
 
 from hpn.catalogue import Catalogue
-from hpn.documents.differences import Compared, DifferentAxis, DocumentDifferences, differences, today
+from hpn.documents.differences import DifferentAxis, DocumentDifferences, differences, today
 from hpn.documents.revision import Frozen
 from hpn.documents.summary import summary_of
 from tests.build import Json, cycle, phase, worked_example
@@ -18,13 +18,13 @@ ALONE = {"requirements": {"utilisation": 0.9}}
 
 
 def compared(one: Frozen, other: Frozen, catalogue: Catalogue) -> DocumentDifferences:
-    return differences(Compared("A", one, catalogue), Compared("B", other, catalogue))
+    return differences(one, other, (catalogue, catalogue))
 
 
 def of_one(before: Json, after: Json, catalogue: Catalogue, common: Json | None = None) -> DifferentAxis:
     """The difference of the one axis of two documents."""
-    sides = (frozen([axis], catalogue, common) for axis in (before, after))
-    (found,) = compared(*sides, catalogue).axes
+    one, other = (frozen([axis], catalogue, common) for axis in (before, after))
+    (found,) = compared(one, other, catalogue).axes
     return found
 
 
@@ -117,7 +117,7 @@ def test_lost_gears_come_first_then_other_gears_then_new_axes_then_by_effect(cat
     assert [each.change for each in found.axes[2:4]] == ["removed", "added"]
     assert found.axes[0].lost_its_gear and found.axes[1].has_another_gear and found.same == 1
     assert found.axes[0].side_to and found.axes[0].side_to.gear is None
-    assert found.side_from.summary.suitable == 6 and found.side_to.summary.suitable == 5
+    assert found.side_from.suitable == 6 and found.side_to.suitable == 5
 
 
 def test_an_axis_that_turns_open_and_one_that_is_answered_say_so(catalogue: Catalogue) -> None:
@@ -153,11 +153,11 @@ def test_today_asks_todays_catalogue_and_keeps_what_was_resolved(
     line = frozen([axis("a", worked_example()), axis("b", {})], catalogue, ALONE, title="Line")
     later = msgspec.json.decode(msgspec.json.encode(line), type=Frozen)
     other = supplemented(weights="size,stages,weight_kg,source\n20A,1,3.6,p\n")
-    found = differences(Compared("A", later, catalogue), Compared("today", today(later, other), other))
+    found = differences(later, today(later, other), (catalogue, other))
     (only,) = found.axes
     assert (only.number, only.inputs) == (1, ())
     assert [(each.field, each.value_to) for each in only.figures] == [("weight_kg", 3.6)]
-    assert found.side_to.summary.catalogue_versions == (other.version,)
+    assert found.side_to.catalogue_versions == (other.version,)
 
 
 def test_the_summary_counts_what_the_list_of_gears_counts(catalogue: Catalogue) -> None:

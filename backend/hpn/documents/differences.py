@@ -6,7 +6,7 @@ comparer. An input that both axes inherit stands among the common ones alone.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal
 
 import msgspec
 from msgspec import Raw, structs
@@ -98,42 +98,29 @@ class DifferentAxis(Reply, frozen=True, rename=SIDES):
         return bool(self.side_from and self.side_to and self.side_from.gear != self.side_to.gear)
 
 
-class DocumentSide(Reply, frozen=True):
-    """One of the documents: the label of a revision, `now` or `today`, and what there is of it."""
-
-    label: Annotated[str, Field(description="Label.")]
-    summary: Annotated[Summary, Field(description="The document in brief.")]
-
-
 class DocumentDifferences(Reply, frozen=True, rename=SIDES):
     """Differences of two documents: axes without a suitable gear first, then those with another, then by effect."""
 
-    side_from: Annotated[DocumentSide, Field(description="The first document.")]
-    side_to: Annotated[DocumentSide, Field(description="The second.")]
+    side_from: Annotated[Summary, Field(description="The first document in brief.")]
+    side_to: Annotated[Summary, Field(description="The second.")]
     common: Annotated[tuple[DifferentInput, ...], Field(description="Title block and common values that differ.")]
     order: Annotated[bool, Field(description="True where the axes of both stand in another order.")]
     axes: Annotated[tuple[DifferentAxis, ...], Field(description="Axes that differ.")]
     same: Annotated[int, Field(description="Number of axes of both that do not differ.")]
 
 
-class Compared(NamedTuple):
-    """A document to be compared: its label, what is in it, and the catalogue of its answers where that is kept."""
-
-    label: str
-    document: Frozen
-    catalogue: Catalogue | None
-
-
-def differences(one: Compared, other: Compared) -> DocumentDifferences:
-    """Differences of two documents."""
-    before, after = ({axis.number: axis for axis in side.document.axes} for side in (one, other))
+def differences(
+    one: Frozen, other: Frozen, catalogues: tuple[Catalogue | None, Catalogue | None] = (None, None)
+) -> DocumentDifferences:
+    """Differences of two documents; gears are counted and weighed where the catalogue of each one's answers is kept."""
+    before, after = ({axis.number: axis for axis in side.axes} for side in (one, other))
     pairs = [(number, old, new) for number, (old, new) in aligned(before, after)]
     found = [axis for number, old, new in pairs if (axis := _axis(number, old, new))]
     both = [number for number in before if number in after]
     return DocumentDifferences(
-        side_from=DocumentSide(one.label, summary_of(one.document, one.catalogue)),
-        side_to=DocumentSide(other.label, summary_of(other.document, other.catalogue)),
-        common=tuple(_common(one.document, other.document)),
+        side_from=summary_of(one, catalogues[0]),
+        side_to=summary_of(other, catalogues[1]),
+        common=tuple(_common(one, other)),
         order=both != [number for number in after if number in before],
         axes=tuple(sorted(found, key=_weight)),
         same=len(pairs) - len(found),
@@ -172,7 +159,7 @@ def _axis(number: int, old: FrozenAxis | None, new: FrozenAxis | None) -> Differ
     known = new or old
     return DifferentAxis(
         number=number,
-        name=known and known.name,
+        name=known.name if known else None,
         change="added" if old is None else "removed" if new is None else "changed",
         side_from=sides[0],
         side_to=sides[1],

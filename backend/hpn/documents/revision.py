@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
 from hpn.documents.answers import AxisAnswer
+from hpn.documents.common import flat
 from hpn.words.fields import Model
 from hpn.words.reply import Reply
 from hpn.words.titles import Note, Title
@@ -66,6 +67,16 @@ class FrozenAxis(Reply, frozen=True):
     application: Raw
     resolved: Raw
     answer: AxisAnswer
+
+    @property
+    def own(self) -> frozenset[str]:
+        """Paths of its own values."""
+        return frozenset(path for path, _ in flat(msgspec.json.decode(self.application)))
+
+    @property
+    def inherited(self) -> frozenset[str]:
+        """Paths of the machine’s values in its application."""
+        return frozenset(path for path, _ in flat(msgspec.json.decode(self.resolved))) - self.own
 
 
 class Frozen(Reply, frozen=True):

@@ -39,6 +39,11 @@ def checks(export: Export, reader: Reader) -> list[Row]:
     return [row for _, row in sorted(rows, key=lambda row: row[0])]
 
 
+def limits(account: Account, reader: Reader) -> list[Row]:
+    """Every check of the gear with demand and limit, without equations."""
+    return [_of_check(check, None, reader) for check in account.checks]
+
+
 def bases(export: Export, reader: Reader) -> list[tuple[str, Any]]:
     """Title and basis of each check, but for what stands beside its equation or limit."""
     told = AS_LIMITED | (TOLD & {step.code for step in _steps(export)})

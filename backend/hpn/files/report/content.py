@@ -1,6 +1,8 @@
 """The report as data: every text in the reader's language, every number as it is printed. The template only sets it."""
 
 import re
+from collections.abc import Mapping
+from datetime import datetime
 from io import BytesIO
 from typing import Any
 
@@ -8,7 +10,7 @@ import segno
 
 from hpn.account.inputs import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.engine.notices import on_motor_torques
-from hpn.files.export import Export
+from hpn.files.export import Export, Heading
 from hpn.files.report import plots, tables
 from hpn.files.report.checks import bases, checks
 from hpn.files.report.listing import listing
@@ -77,38 +79,58 @@ LIVES = N_("Hours of operation of the whole cycle, its pause included. L10: 90 %
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets, as JSON-ready data."""
-    text, selection, account = reader.text, export.selection, export.account
-    labels = {key: text(label) for key, label in LABELS.items()}
-    labels |= {key: labels[key].format(gear=export.candidate.designation) for key in ("checks", "ratings")}
-    on_motor, pictures = reader.told(on_motor_torques(selection.notices)), plots.pictures_of(export, reader)
-    title = _shortened(export.heading.title.strip() or labels["untitled"], LONGEST_TITLE)
-    return {
-        "lang": reader.language,
-        "paper": paper(reader),
-        "labels": labels,
+    title = shortened(export.heading.title.strip() or reader.text(LABELS["untitled"]), LONGEST_TITLE)
+    return frame(export.heading, reader) | {
         "title": title,
-        "head": [_shortened(title, LONGEST_HEAD), _head(export, reader)],
-        "author": export.heading.author.strip(),
-        "block": _block(export, reader),
+        "head": [shortened(title, LONGEST_HEAD), _head(export, reader)],
+        "block": block(export.heading, reader, export.created, export.made),
         "saved": export.created is not None,
-        **_link(export, reader),
+        **link_of(export.link, reader, is_saved=export.created is not None),
+        **parts(export, reader),
+    }
+
+
+def frame(heading: Heading, reader: Reader) -> dict[str, Any]:
+    """Language, paper, labels and author of a report."""
+    labels = {key: reader.text(label) for key, label in LABELS.items()}
+    return {"lang": reader.language, "paper": paper(reader), "labels": labels, "author": heading.author.strip()}
+
+
+def parts(export: Export, reader: Reader) -> dict[str, Any]:
+    """What the template sets of the selection itself."""
+    selection, account = export.selection, export.account
+    on_motor, pictures = reader.told(on_motor_torques(selection.notices)), plots.pictures_of(export, reader)
+    return asked(export, reader) | {
+        "titles": titles(export, reader),
         "verdict": verdict(export, reader),
-        "loads": tables.lines(account.loads, reader),
-        "requirements": tables.lines(account.requirements, reader),
-        "motion": tables.motion(account, reader),
-        "phases": tables.phases(account, reader),
         "move_listing": listing(account.moves, reader),
         "listing": listing(account.phases, reader),
         "derived": tables.derived(account, reader),
         "cycle": plots.cycle(export, pictures, reader),
         "planes": plots.planes(export, pictures, reader, on_motor),
         "bearing": plots.envelope(pictures, reader),
-        "bearing_alt": text(N_("Loads of the phases within the envelopes of the output bearing")),
+        "bearing_alt": reader.text(N_("Loads of the phases within the envelopes of the output bearing")),
         "checks": checks(export, reader),
         "ratings": tables.lines(account.published, reader),
         "alternatives": alternatives(export, reader),
         "basis": _basis(export, reader, on_motor),
         "notices": [sentence(reader.told(notice.sentence)) for notice in selection.notices],
+    }
+
+
+def titles(export: Export, reader: Reader) -> dict[str, str]:
+    """Titles that name the gear."""
+    return {key: reader.text(LABELS[key]).format(gear=export.candidate.designation) for key in ("checks", "ratings")}
+
+
+def asked(export: Export, reader: Reader) -> dict[str, Any]:
+    """Loads, requirements, motion and phases."""
+    account = export.account
+    return {
+        "loads": tables.lines(account.loads, reader),
+        "requirements": tables.lines(account.requirements, reader),
+        "motion": tables.motion(account, reader),
+        "phases": tables.phases(account, reader),
     }
 
 
@@ -121,44 +143,48 @@ def _basis(export: Export, reader: Reader, on_motor: str) -> list[tuple[str, Any
 
 def _head(export: Export, reader: Reader) -> str:
     """Running head beside the title: reference and revision, and the versions behind every figure."""
-    heading, text = export.heading, reader.text
+    return running_head(export.heading, export.selection.engine_version, catalogue_version(export, reader), reader)
+
+
+def running_head(heading: Heading, engine: str, catalogue: str, reader: Reader) -> str:
+    """The same by the versions themselves."""
+    text = reader.text
     revision = f"{text(N_('Revision'))} {heading.revision.strip()}" if heading.revision.strip() else ""
     own = ", ".join(filter(None, (heading.reference.strip(), revision)))
-    versions = f"{text(N_('Engine'))} {export.selection.engine_version}, " + (
-        f"{text(N_('Catalogue'))} {catalogue_version(export, reader)}"
-    )
-    return " · ".join(filter(None, (_shortened(own, LONGEST_HEAD), versions)))
+    versions = f"{text(N_('Engine'))} {engine}, {text(N_('Catalogue'))} {catalogue}"
+    return " · ".join(filter(None, (shortened(own, LONGEST_HEAD), versions)))
 
 
-def _block(export: Export, reader: Reader) -> dict[str, list[str]]:
+def block(heading: Heading, reader: Reader, created: datetime | None, made: datetime | None) -> dict[str, list[str]]:
     """Fields of the title block: label and text; one that nobody filled in has a dash."""
-    heading, made = export.heading, export.made
-    dated = reader.date(export.created) if export.created else reader.day(made) if made else ""
+    dated = reader.date(created) if created else reader.day(made) if made else ""
     fields = {
         "reference": (N_("Reference"), heading.reference),
         "revision": (N_("Revision"), heading.revision),
         "author": (N_("Author"), heading.author),
-        "date": (N_("Saved") if export.created else N_("Date"), dated),
+        "date": (N_("Saved") if created else N_("Date"), dated),
     }
     return {
-        name: [reader.text(label), _shortened(value.strip(), LONGEST_TITLE) or NOTHING]
+        name: [reader.text(label), shortened(value.strip(), LONGEST_TITLE) or NOTHING]
         for name, (label, value) in fields.items()
     }
 
 
-def _shortened(text: str, most: int) -> str:
+def shortened(text: str, most: int) -> str:
+    """A text in one line of so many characters, without marks that turn its direction."""
     plain = " ".join(_TURNING.sub("\N{REPLACEMENT CHARACTER}", text).split())
     return plain if len(plain) <= most else plain[: most - 1] + "…"
 
 
-def _link(export: Export, reader: Reader) -> dict[str, Any]:
+def link_of(
+    link: str, reader: Reader, *, is_saved: bool, notes: Mapping[str, str] = LINK, carried: str = CARRIED
+) -> dict[str, Any]:
     """Link and its code, as far as paper carries them whole, and a note on both."""
-    link = export.link
-    carrier = "too long" if len(link) > LONGEST_LINK else "saved" if export.created else "whole"
+    carrier = "too long" if len(link) > LONGEST_LINK else "saved" if is_saved else "whole"
     return {
         "link": "" if carrier == "too long" else link,
-        "link_note": reader.text(LINK[carrier]),
-        "link_hint": reader.text(CARRIED) if carrier == "whole" else "",
+        "link_note": reader.text(notes[carrier]),
+        "link_hint": reader.text(carried) if carrier == "whole" else "",
         "qr": qr_code(link) if len(link) <= LONGEST_QR_LINK else "",
     }
 

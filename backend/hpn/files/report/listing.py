@@ -21,7 +21,7 @@ def listing(table: Table | None, reader: Reader) -> dict[str, Any] | None:
     if table is None or len(table) <= MOST_PHASES:
         return None
     labels = [[reader.text(head), *texts] for head, texts in table.labels.items()]
-    return _laid_out([*labels, *([_head(column, reader), *column.numbers(reader)] for column in table.columns)])
+    return laid_out([*labels, *([_head(column, reader), *column.numbers(reader)] for column in table.columns)])
 
 
 def _head(column: Column, reader: Reader) -> str:
@@ -30,7 +30,7 @@ def _head(column: Column, reader: Reader) -> str:
     return f"{symbol} [{unit}]" if unit else symbol
 
 
-def _laid_out(table: list[list[str]]) -> dict[str, Any]:
+def laid_out(table: list[list[str]]) -> dict[str, Any]:
     """Columns of texts as lines of one width, as many beside each other as a page holds."""
     widths = [max(map(len, column)) for column in table]
     head, *lines = (

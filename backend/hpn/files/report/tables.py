@@ -20,6 +20,7 @@ def lines(shown: Iterable[Line], reader: Reader) -> list[dict[str, Any]]:
 
 def _row(line: Line, reader: Reader) -> dict[str, Any]:
     row = {
+        "code": line.code,
         "label": sentence(_label(line, reader)),
         "symbol": formula(line.named.symbol),
         "text": line.text(reader),

@@ -170,6 +170,18 @@ def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
     }
 
 
+def beside(export: Export, reader: Reader, most: int) -> dict[str, Any]:
+    """The next suitable gears beside the reported one, or the nearest ones where it is not suitable."""
+    others = [candidate for candidate in export.selection.candidates if candidate is not export.candidate]
+    suitable = [candidate for candidate in others if candidate.status == "suitable"]
+    listed = suitable or [candidate for candidate in others if candidate.is_judged]
+    return {
+        "title": reader.text(N_("Next suitable gears") if suitable else N_("Next nearest gears")),
+        "heads": [sentence(reader.text(head)) for head in HEADS],
+        "rows": [_row(export, candidate, reader) for candidate in listed[:most]],
+    }
+
+
 def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]:
     """A suitable gear as the cells of a table."""
     account, code, life = export.account.of(candidate), candidate.governing_check, shortest_life(candidate)

@@ -2,10 +2,14 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from datetime import UTC, datetime
+from io import BytesIO
+from typing import Any, Protocol
+
+import xlsxwriter
 
 from hpn.account.lines import Line, Table, known
-from hpn.files.export import LOWER_BOUND, Export
+from hpn.files.export import LOWER_BOUND, Export, Heading
 from hpn.files.words import Paper, paper
 from hpn.files.workbook import EveryDigit
 from hpn.words.reader import Reader
@@ -60,13 +64,29 @@ ROW_POINTS = 12.75
 Cell = float | str | None
 
 
+class Titled(Protocol):
+    """What a page of a workbook says of its content: title block, when it was saved, and its link."""
+
+    @property
+    def heading(self) -> Heading:
+        """Title block."""
+
+    @property
+    def created(self) -> datetime | None:
+        """Moment of saving; None for what is not saved."""
+
+    @property
+    def link(self) -> str:
+        """Absolute address."""
+
+
 @dataclass
-class Sheet:
+class Leaf:
     """A sheet that is written from the top, in its reader's language and units; `row` is the next one."""
 
     sheet: Any
     styles: Mapping[str, Any]
-    export: Export
+    export: Titled
     reader: Reader
     row: int = 0
 
@@ -93,33 +113,6 @@ class Sheet:
         self.sheet.merge_range(self.row, 0, self.row, len(widths) - 1, text, self.styles["wrap"])
         self.sheet.set_row(self.row, ROW_POINTS * (1 + len(text) // int(sum(widths))))
         self.row += 1
-
-    def lines(self, title: str, lines: Iterable[Line]) -> None:
-        """Table of quantities with a value; nothing where there is none."""
-        with_value, reader = known(lines), self.reader
-        if not with_value:
-            return
-        self.heads(title)
-        for line in with_value:
-            self.put(0, line.label(reader))
-            self.put(1, line.named.symbol, "quiet")
-            self.put(2, line.shown(reader), "figure")
-            self.put(3, reader.unit(line.unit) if isinstance(line.value, float | int) else "", "unit")
-            self.put(4, reader.text(LOWER_BOUND) if line.is_lower_bound else line.where(reader), "quiet")
-            self.row += 1
-
-    def table(self, title: str, table: Table) -> None:
-        """Table of columns by their heads, each with the unit of its numbers."""
-        text, columns = self.reader.text, table.columns
-        heads = [self.head(c.head.named.symbol or c.head.label(self.reader), c.head.code) for c in columns]
-        first = len(table.labels)
-        self.heads(title, *map(text, table.labels), *heads, numbers=range(1, first + len(heads)))
-        for place, labels in enumerate(zip(*table.labels.values(), strict=True)):
-            for column, label in enumerate(labels):
-                self.put(column, label, "figure" if column else "quiet")
-            for column, each in enumerate(columns, first):
-                self.put(column, each.head.of(each.values[place]).shown(self.reader), "figure")
-            self.row += 1
 
     def head(self, text: str, field: str) -> str:
         """Head of a column of numbers: a text or symbol, with the unit that its reader sees."""
@@ -148,6 +141,57 @@ class Sheet:
         self.sheet.set_footer(f"&LHPN Select {_plain(link)}&R{numbers}", HEAD_AND_FOOT)
 
 
+@dataclass
+class Sheet(Leaf):
+    """A sheet of a selection."""
+
+    export: Export
+
+    def lines(self, title: str, lines: Iterable[Line]) -> None:
+        """Table of quantities with a value; nothing where there is none."""
+        with_value, reader = known(lines), self.reader
+        if not with_value:
+            return
+        self.heads(title)
+        for line in with_value:
+            self.put(0, line.label(reader))
+            self.put(1, line.named.symbol, "quiet")
+            self.put(2, line.shown(reader), "figure")
+            self.put(3, reader.unit(line.unit) if isinstance(line.value, float | int) else "", "unit")
+            self.put(4, reader.text(LOWER_BOUND) if line.is_lower_bound else line.where(reader), "quiet")
+            self.row += 1
+
+    def table(self, title: str, table: Table) -> None:
+        """Table of columns by their heads, each with the unit of its numbers."""
+        text, columns = self.reader.text, table.columns
+        heads = [self.head(c.head.named.symbol or c.head.label(self.reader), c.head.code) for c in columns]
+        first = len(table.labels)
+        self.heads(title, *map(text, table.labels), *heads, numbers=range(1, first + len(heads)))
+        for place, labels in enumerate(zip(*table.labels.values(), strict=True)):
+            for column, label in enumerate(labels):
+                self.put(column, label, "figure" if column else "quiet")
+            for column, each in enumerate(columns, first):
+                self.put(column, each.head.of(each.values[place]).shown(self.reader), "figure")
+            self.row += 1
+
+
 def _plain(text: str) -> str:
     """Text of a header without commands, which begin with &."""
     return text.replace("&", "&&")
+
+
+# --- The book ---------------------------------------------------------------------------------------------------------
+
+UNDATED = datetime(1980, 1, 1)
+"""Creation time of a workbook of what is not saved: the earliest that its container can hold."""
+
+
+def new_book(content: BytesIO, export: Titled) -> tuple[Any, Mapping[str, Any]]:
+    """A workbook and its styles; the same bytes for the same content."""
+    options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "nan_inf_to_errors": False}
+    book = xlsxwriter.Workbook(content, options | {"default_format_properties": dict(FONT)})
+    created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
+    author = export.heading.author or "HPN Select"
+    book.set_properties({"title": export.heading.title, "author": author, "created": created})
+    book.set_calc_mode("auto")
+    return book, {name: book.add_format({**FONT, **style}) for name, style in STYLES.items()}

@@ -1,9 +1,6 @@
 """The workbook: title block, checks, figures and notes, all inputs, every candidate, and the printed equations."""
 
-from datetime import UTC, datetime
 from io import BytesIO
-
-import xlsxwriter
 
 from hpn.account.readings import Reading
 from hpn.files.export import Export
@@ -11,13 +8,10 @@ from hpn.files.words import catalogue_version
 from hpn.files.workbook.candidates import write_candidates
 from hpn.files.workbook.equations import write_equations
 from hpn.files.workbook.inputs import write_inputs
-from hpn.files.workbook.sheet import FONT, LONGEST_TEXT, ROW_POINTS, STYLES, VERDICT_STYLES, Cell, Sheet
+from hpn.files.workbook.sheet import LONGEST_TEXT, ROW_POINTS, VERDICT_STYLES, Cell, Sheet, new_book
 from hpn.words.reader import Reader
 from hpn.words.terms import VERDICTS
 from hpn.words.wording import N_
-
-UNDATED = datetime(1980, 1, 1)
-"""Creation time of the workbook of a selection that is not saved: the earliest that its container can hold."""
 
 WIDTHS = (38, 18, 13, 13, 9, 11, 14, 30)
 """Columns of the first sheet in characters; the basis of each check stands behind them and is not printed."""
@@ -26,13 +20,7 @@ WIDTHS = (38, 18, 13, 13, 9, 11, 14, 30)
 def workbook(export: Export, reader: Reader) -> bytes:
     """The workbook on an export; the same bytes for the same selection."""
     content = BytesIO()
-    options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "nan_inf_to_errors": False}
-    book = xlsxwriter.Workbook(content, options | {"default_format_properties": dict(FONT)})
-    created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED
-    author = export.heading.author or "HPN Select"
-    book.set_properties({"title": export.heading.title, "author": author, "created": created})
-    book.set_calc_mode("auto")
-    styles = {name: book.add_format({**FONT, **style}) for name, style in STYLES.items()}
+    book, styles = new_book(content, export)
     for name, write in (
         (N_("Selection"), _write_selection),
         (N_("Inputs"), write_inputs),

@@ -1,0 +1,134 @@
+"""Differences of two documents in words and numbers, alike in PDF and workbook."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import cached_property
+from typing import Any
+
+from hpn.account.lines import Line
+from hpn.account.readings import life_of
+from hpn.catalogue import Catalogue
+from hpn.documents.differences import DifferentAnswer, DifferentAxis, DifferentInput, DocumentDifferences, differences
+from hpn.documents.revision import Frozen, FrozenAxis
+from hpn.files.export import Heading
+from hpn.files.machine.inputs import line_of, path_of
+from hpn.files.machine.words import STATUS, bound_of, check_of
+from hpn.words.quantities import CANDIDATE, DUTY, GEAR
+from hpn.words.reader import NOTHING, Reader
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Named, Sentence
+
+ANSWER = {
+    "selected": Named(N_("Selected gear")),
+    "suitable": Named(N_("Suitable gears")),
+    "runner_up": Named(N_("Second suitable gear")),
+    "weight_kg": GEAR["weight_kg"],
+    "average_torque_Nm": DUTY["average_torque_Nm"],
+}
+"""Fields of an answer that are no figures of a candidate."""
+
+LOST = N_("was suitable; nearest {gear}, {check}")
+WANTING = N_("no suitable gear; nearest {gear}, {check}")
+NOW_OPEN = N_("has no answer any more")
+OTHER_CHECK, LONGER = N_("{check}; was {before}"), N_("shortest life {before} → {after}")
+ADDED, REMOVED, SAME = N_("new"), N_("removed"), N_("the same result")
+
+
+@dataclass(frozen=True)
+class DifferencesExport:
+    """Two documents to be compared by their labels, the catalogues of their answers, and where the comparison is."""
+
+    labels: tuple[str, str]
+    documents: tuple[Frozen, Frozen]
+    catalogues: tuple[Catalogue | None, Catalogue | None]
+    link: str
+    heading: Heading = field(default_factory=Heading)
+    created: datetime | None = None
+    made: datetime | None = None
+
+    @cached_property
+    def differences(self) -> DocumentDifferences:
+        """What differs."""
+        return differences(*self.documents, self.catalogues)
+
+    @cached_property
+    def _axes(self) -> tuple[dict[int, FrozenAxis], dict[int, FrozenAxis]]:
+        one, other = ({axis.number: axis for axis in document.axes} for document in self.documents)
+        return one, other
+
+    def sides(self, number: int) -> tuple[FrozenAxis | None, FrozenAxis | None]:
+        """An axis in both documents."""
+        return self._axes[0].get(number), self._axes[1].get(number)
+
+
+def input_lines(each: DifferentInput) -> tuple[Line, Line]:
+    """An input that differs as lines."""
+    path = path_of(each.pointer)
+    return line_of(path, each.value_from), line_of(path, each.value_to)
+
+
+def answer_lines(each: DifferentAnswer, reader: Reader) -> tuple[Line, Line]:
+    """A verdict or figure that differs as lines."""
+    named = ANSWER.get(each.field) or CANDIDATE.get(each.field) or Named(each.field)
+    one, other = (_answer_line(each.field, named, value, reader) for value in (each.value_from, each.value_to))
+    return one, other
+
+
+def _answer_line(name: str, named: Named, value: Any, reader: Reader) -> Line:
+    code = f"candidate.{name}"
+    if name == "governing_check":
+        return Line(code, named, check_of(value, reader) or None, kind="computed")
+    if name == "status":
+        return Line(code, named, STATUS.get(value, value), kind="computed")
+    return Line(code, named, value, suffix_of(name) if isinstance(value, float | int) else "", "computed")
+
+
+def shown(line: Line, reader: Reader) -> str:
+    """A value as it is read, with its unit; a dash for none, and a utilisation in percent."""
+    if line.code == "candidate.utilisation" and isinstance(line.value, float | int):
+        return reader.percent(line.value)
+    return line.text(reader) if line.value is not None else NOTHING
+
+
+def used(axis: FrozenAxis | None, reader: Reader) -> str:
+    """Utilisation of an axis; blank where the document lacks it."""
+    return reader.percent(axis.answer.utilisation, bound_of(axis)) if axis else ""
+
+
+def effect(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None], reader: Reader) -> str:
+    """What the differences of an axis do to it, in words."""
+    return reader.told(_effect(axis, sides, reader))
+
+
+def _effect(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None], reader: Reader) -> Sentence:
+    before, after = sides
+    if after is None:
+        return Sentence(REMOVED)
+    answer = after.answer
+    check = check_of(answer.governing_check, reader)
+    if answer.status == "open":
+        return Sentence(NOW_OPEN if before else ADDED)
+    if answer.status != "suitable" and (axis.lost_its_gear or axis.verdicts):
+        template = LOST if before and axis.lost_its_gear else WANTING
+        return Sentence(template, {"gear": answer.designation or "", "check": check})
+    if before is None:
+        return Sentence(ADDED)
+    if answer.governing_check != before.answer.governing_check:
+        return Sentence(OTHER_CHECK, {"check": check, "before": check_of(before.answer.governing_check, reader)})
+    if lives := _lives(axis, before, after):
+        return Sentence(LONGER, lives)
+    return Sentence(SAME) if not axis.figures and not axis.verdicts else Sentence("{text}", {"text": check})
+
+
+def _lives(axis: DifferentAxis, before: FrozenAxis, after: FrozenAxis) -> dict[str, Any] | None:
+    if all(each.field != "shortest_life_h" for each in axis.figures):
+        return None
+    answers = (before.answer, after.answer)
+    lives = [life_of(each.shortest_life_h, each.shortest_life_of).sentence for each in answers if each.shortest_life_h]
+    return {"before": lives[0], "after": lives[1]} if len(lives) == 2 else None
+
+
+def common_lines(export: DifferencesExport) -> Iterator[tuple[Line, Line]]:
+    """Title block and common values that differ."""
+    return map(input_lines, export.differences.common)

@@ -1,0 +1,113 @@
+"""Differences of two documents as PDF: what differs axis by axis, cell by cell."""
+
+from typing import Any
+
+from hpn.documents.differences import DifferentAxis
+from hpn.documents.revision import FrozenAxis
+from hpn.files.machine.changes import (
+    DifferencesExport,
+    answer_lines,
+    common_lines,
+    effect,
+    input_lines,
+    shown,
+    used,
+)
+from hpn.files.machine.inputs import label_of
+from hpn.files.machine.words import bound_of
+from hpn.files.report.checks import bar
+from hpn.files.report.content import LONGEST_HEAD, LONGEST_TITLE, block, frame, link_of, shortened
+from hpn.files.report.pdf import printed
+from hpn.words.reader import Reader
+from hpn.words.wording import N_, Sentence
+
+MOST_AXES, MOST_CELLS = 500, 12
+"""Axes that are written out, and inputs of each; the workbook has all."""
+
+LABELS = {
+    "differs": N_("Axes that differ"),
+    "axis": N_("Axis"),
+    "input": N_("Input"),
+    "gear": N_("Gear"),
+    "effect": N_("Effect"),
+    "every_axis": N_("For every axis"),
+    "no_gear": N_("no gear"),
+}
+LINK = {
+    "saved": N_("This comparison"),
+    "whole": N_("This comparison"),
+    "too long": N_("The link is too long to print."),
+}
+UNTITLED = N_("Untitled machine")
+COUNTS = N_("{changed} of {count} axes differ; {lost} lost their gear, {other} have another one.")
+NO_CHANGE = N_("Nothing differs.")
+MORE_AXES, MORE_CELLS = N_("and {count} more axes; the workbook has all"), N_("and {count} more")
+REORDERED = N_("The axes stand in another order.")
+
+
+def pdf(export: DifferencesExport, reader: Reader) -> bytes:
+    """The report on what differs."""
+    return printed("differences.typ", content(export, reader), export.heading.title.strip(), export.created)
+
+
+def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
+    """Everything that the template sets."""
+    data, found, text = frame(export.heading, reader), export.differences, reader.text
+    title = shortened(export.heading.title.strip() or text(UNTITLED), LONGEST_TITLE)
+    arrow = " → ".join(export.labels)
+    count, more = len(found.axes) + found.same, len(found.axes) - MOST_AXES
+    values = {
+        "changed": reader.exact(len(found.axes)),
+        "count": reader.exact(count),
+        "lost": reader.exact(sum(axis.lost_its_gear for axis in found.axes)),
+        "other": reader.exact(sum(axis.has_another_gear for axis in found.axes)),
+    }
+    notes = [reader.told(Sentence(COUNTS, values)) if found.axes else text(NO_CHANGE)]
+    notes += [text(REORDERED)] if found.order else []
+    return data | {
+        "labels": data["labels"] | {key: text(label) for key, label in LABELS.items()},
+        "title": title,
+        "head": [shortened(title, LONGEST_HEAD), arrow],
+        "block": block(export.heading, reader, export.created, export.made)
+        | {"revision": [text(N_("Revision")), arrow]},
+        "saved": export.created is not None,
+        **link_of(export.link, reader, is_saved=True, notes=LINK),
+        "sides": list(export.labels),
+        "notes": notes,
+        "notices": [],
+        "facts": [],
+        "common": [
+            [reader.told(label_of(each.pointer)), *(shown(line, reader) for line in lines)]
+            for each, lines in zip(found.common, common_lines(export), strict=True)
+        ],
+        "rows": [_row(axis, export.sides(axis.number), reader) for axis in found.axes[:MOST_AXES]],
+        "more": reader.told(Sentence(MORE_AXES, {"count": reader.exact(more)})) if more > 0 else "",
+    }
+
+
+def _row(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None], reader: Reader) -> dict[str, Any]:
+    cells = [[reader.told(label_of(each.pointer)), *_both(input_lines(each), reader)] for each in axis.inputs]
+    if not cells:
+        lines = [answer_lines(each, reader) for each in axis.figures if each.field != "utilisation"]
+        cells = [[pair[0].label(reader), *_both(pair, reader)] for pair in lines]
+    more = len(cells) - MOST_CELLS
+    return {
+        "number": axis.number,
+        "name": axis.name or "",
+        "cells": cells[:MOST_CELLS],
+        "more": reader.told(Sentence(MORE_CELLS, {"count": reader.exact(more)})) if more > 0 else "",
+        "gears": [side.gear if side else None for side in (axis.side_from, axis.side_to)],
+        "bars": [_bar(side, reader) for side in sides],
+        "used": [used(side, reader) for side in sides],
+        "effect": effect(axis, sides, reader),
+    }
+
+
+def _both(lines: Any, reader: Reader) -> list[str]:
+    return [shown(line, reader) for line in lines]
+
+
+def _bar(axis: FrozenAxis | None, reader: Reader) -> dict[str, Any] | None:
+    if axis is None or axis.answer.status == "open":
+        return None
+    return bar(axis.answer.utilisation, bound_of(axis), axis.answer.status, reader)

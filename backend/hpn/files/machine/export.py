@@ -1,0 +1,155 @@
+"""A machine as it leaves the service: the document as it was, and whole selections of the axes that get a page."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import cached_property
+from typing import NamedTuple
+
+from pydantic import ValidationError
+
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue
+from hpn.documents.differences import DocumentDifferences, differences
+from hpn.documents.gears import GearOrder
+from hpn.documents.revision import Frozen, FrozenAxis
+from hpn.documents.summary import Summary, order_of, summary_of
+from hpn.engine.batch import judge_batch
+from hpn.engine.selection import Judged, Selection
+from hpn.files.export import Export, Heading
+from hpn.words.wording import N_, Sentence
+
+MOST_PAGES, MOST_FULL = 500, 100
+"""Axes that get a page, or their whole calculation."""
+
+AT_ONCE = 50
+"""Selections that are kept at a time."""
+
+_RANGE = re.compile(r"([0-9]{1,7})(?:-([0-9]{1,7}))?")
+NONE = "none"
+
+NOT_A_LIST = N_("must be numbers and ranges of axes, such as 3,7-20, or none")
+NO_AXIS = N_("the machine has no such axis")
+TOO_MANY = N_("the report has pages of at most {most} axes; choose some, such as 3,7-20")
+TOO_MANY_FULL = N_("the report has the whole calculation of at most {most} axes; choose some, such as 3,7-20")
+
+
+@dataclass(frozen=True)
+class MachineExport:
+    """A document, the catalogue of its answers, and what a reader needs to find it again.
+
+    `heading` has the label of the revision, none for the working copy. `created` is when that was saved, `made` the day
+    of a file of the working copy. `before` is the revision before by its label, whose differences are marked.
+    """
+
+    document: Frozen
+    catalogue: Catalogue
+    link: str
+    heading: Heading = field(default_factory=Heading)
+    created: datetime | None = None
+    made: datetime | None = None
+    before: tuple[str, Frozen] | None = None
+
+    @cached_property
+    def summary(self) -> Summary:
+        """The machine in brief."""
+        return summary_of(self.document, self.catalogue)
+
+    @cached_property
+    def order(self) -> GearOrder:
+        """Gears to order."""
+        return order_of(self.document.axes, self.catalogue)
+
+    @cached_property
+    def since(self) -> DocumentDifferences | None:
+        """Differences from the revision before; None without one."""
+        return differences(self.before[1], self.document) if self.before else None
+
+
+class Pages(NamedTuple):
+    """Axes that get pages of their own, in the order of the machine, and whether those are the whole calculation."""
+
+    axes: tuple[FrozenAxis, ...]
+    full: bool = False
+
+
+def pages_of(document: Frozen, axes: str | None = None, *, full: bool = False) -> Pages:
+    """Axes with pages: those of a list such as `3,7-20`, by default all of them.
+
+    Without a list a machine with more axes than may have a page gets none. Raises InputError for a list that is none,
+    that names an axis which is not there, or too many.
+    """
+    most, template = (MOST_FULL, TOO_MANY_FULL) if full else (MOST_PAGES, TOO_MANY)
+    if axes is None:
+        if full and len(document.axes) > most:
+            raise _wrong(template, most)
+        return Pages(document.axes if len(document.axes) <= most else (), full)
+    ranges = [] if axes.strip() == NONE else [_range(part.strip()) for part in axes.split(",")]
+    chosen = tuple(axis for axis in document.axes if any(axis.number in numbers for numbers in ranges))
+    numbers = {axis.number for axis in chosen}
+    if any(not numbers.intersection(part) if len(part) > 1 else part[0] not in numbers for part in ranges):
+        raise _wrong(NO_AXIS)
+    if len(chosen) > most:
+        raise _wrong(template, most)
+    return Pages(chosen, full)
+
+
+def _range(text: str) -> range:
+    match = _RANGE.fullmatch(text)
+    if match is None or (match[2] and int(match[2]) < int(match[1])):
+        raise _wrong(NOT_A_LIST)
+    return range(int(match[1]), int(match[2] or match[1]) + 1)
+
+
+def _wrong(template: str, most: int = 0) -> InputError:
+    return InputError((("axes",), Sentence(template, {"most": most} if most else {})))
+
+
+# --- Selections of axes -----------------------------------------------------------------------------------------------
+
+
+def exports_of(export: MachineExport, axes: Sequence[FrozenAxis]) -> Iterator[tuple[FrozenAxis, Export | None]]:
+    """Axes with their selections under the catalogue of the document; None for an axis without an answer.
+
+    No more selections are kept at a time than a few.
+    """
+    for start in range(0, len(axes), AT_ONCE):
+        some = axes[start : start + AT_ONCE]
+        applications = [_application(axis) for axis in some]
+        sound = [application for application in applications if application is not None]
+        selections = iter(judge_batch(sound, export.catalogue, _selection))
+        for axis, application in zip(some, applications, strict=True):
+            selection = None if application is None else next(selections)
+            if application is None or not isinstance(selection, Selection):
+                yield axis, None
+            else:
+                yield axis, _export(export, axis, application, selection)
+
+
+def _selection(judged: Judged) -> Selection:
+    return judged.selection()
+
+
+def _application(axis: FrozenAxis) -> Application | None:
+    """Application of an axis; None where it is open, or another version has answered what is none any more."""
+    if axis.answer.status == "open":
+        return None
+    try:
+        return Application.model_validate_json(bytes(axis.resolved))
+    except ValidationError:
+        return None
+
+
+def _export(export: MachineExport, axis: FrozenAxis, application: Application, selection: Selection) -> Export:
+    heading = Heading(axis.name or "", export.heading.reference, "", export.heading.revision, axis.ordering_code or "")
+    return Export(
+        application=application,
+        selection=selection,
+        link=f"{export.link}/axes/{axis.number}",
+        heading=heading,
+        created=export.created,
+        made=export.made,
+        catalogue=export.catalogue,
+        chosen=axis.answer.designation or "",
+    )
