@@ -172,7 +172,7 @@ def _axis(number: int, old: FrozenAxis | None, new: FrozenAxis | None) -> Differ
 
 def _answered(old: AxisAnswer, new: AxisAnswer) -> Iterator[DifferentAnswer]:
     """Verdicts and figures that differ, without those that the version of one answer did not know."""
-    unknown = {*getattr(old, "unknown", ()), *getattr(new, "unknown", ())}
+    unknown = {*old.unknown, *new.unknown}
     for name in (*VERDICTS, *FIGURES):
         one, other = getattr(old, name), getattr(new, name)
         if name not in unknown and not is_same(one, other):

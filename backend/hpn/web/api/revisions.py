@@ -1,8 +1,7 @@
 """Revisions of documents over REST, and what is read out of the working copy: gears to order and fewest kinds."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from fastapi import APIRouter, Path, Query
 from starlette.requests import Request
@@ -159,23 +158,49 @@ async def read_differences(
         detail = "today is compared with a revision, or with now"
         raise Problem(422, detail, [(("to",), detail)])
     machine = await found(request, id)
-    states = [await _state(request, machine, label) for label in (before, after)]
-    body = await compute(request, "batches", _compared, states, request.app.state.catalogue)
+    states = [await state_of(request, machine, label) for label in (before, after)]
+    body = await compute(
+        request, "batches", lambda: encode(differences(*documents_of(*states), catalogues_of(*states)))
+    )
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
 
 
-async def _state(request: Request, machine: Machine, label: str) -> bytes | Machine | None:
-    """A revision as it was frozen, or the working copy; None for today."""
-    if label_key(label) in (NOW, TODAY):
-        return machine if label_key(label) == NOW else None
-    return (await _revision(request, machine.id, label))[1]
+class State(NamedTuple):
+    """A revision as it was frozen, or the working copy, or None for what today says to the other; and its catalogue."""
+
+    content: bytes | Machine | None
+    catalogue: Catalogue | None
 
 
-def _compared(states: Sequence[bytes | Machine | None], catalogue: Catalogue) -> bytes:
-    known = [_frozen_state(each) for each in states]
+async def state_of(request: Request, machine: Machine, label: str) -> State:
+    """A revision by its label, the working copy or today; Problem 404."""
+    today_s: Catalogue = request.app.state.catalogue
+    if label_key(label) == TODAY:
+        return State(None, today_s)
+    if label_key(label) == NOW:
+        version, content = machine.catalogue_version, machine
+        return State(
+            content, today_s if version == today_s.version else await request.app.state.store.catalogue(version)
+        )
+    line, frozen = await _revision(request, machine.id, label)
+    version = line.catalogue_version
+    return State(frozen, today_s if version == today_s.version else await request.app.state.store.catalogue(version))
+
+
+def documents_of(one: State, other: State) -> tuple[Frozen, Frozen]:
+    """The documents of two states of which one at least is not today."""
+    known = [_frozen_state(each.content) for each in (one, other)]
     there = next(each for each in known if each is not None)
-    one, other = (today(there, catalogue) if each is None else each for each in known)
-    return encode(differences(one, other))
+    first, second = (
+        today(there, state.catalogue) if each is None and state.catalogue else each or there
+        for each, state in zip(known, (one, other), strict=True)
+    )
+    return first, second
+
+
+def catalogues_of(one: State, other: State) -> tuple[Catalogue | None, Catalogue | None]:
+    """Their catalogues."""
+    return one.catalogue, other.catalogue
 
 
 def _frozen_state(state: bytes | Machine | None) -> Frozen | None:

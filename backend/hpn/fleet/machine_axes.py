@@ -1,0 +1,156 @@
+"""Axes of a machine as a table in list form: its own values by their paths, and what only a machine has of an axis.
+
+A row is an axis by its number. What a column can't hold, such as a motion, or a value that leaves the axis open, stands
+as JSON in `rest`, so that the table has everything that the axis has.
+"""
+
+import json
+from collections.abc import Mapping
+from io import BytesIO
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv as pacsv
+import pyarrow.parquet as pq
+
+from hpn.documents.axis import Axis
+from hpn.documents.revision import Frozen, FrozenAxis
+from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
+from hpn.fleet.tables import LONGEST_TEXT
+
+Json = dict[str, Any]
+
+OF_MACHINE: Mapping[str, pa.DataType] = {
+    "axis_name": pa.string(),
+    "quantity": pa.int64(),
+    "note": pa.string(),
+    "ordering_code": pa.string(),
+    "without": pa.list_(pa.string()),
+    "rest": pa.string(),
+}
+"""Columns that a table of a fleet has not."""
+
+LARGEST = 1e300
+
+
+def table_of(document: Frozen) -> pa.Table:
+    """Table of the axes of a document in their order; a column that none of them fills is left out."""
+    rows = [_row(axis) for axis in document.axes]
+    used = {name for row in rows for name, value in row.items() if value is not None}
+    required = [name for name, column in COLUMNS.phases.items() if column.required]
+    kinds = {AXIS: pa.int64(), **OF_MACHINE, **{name: column.type for name, column in COLUMNS.all.items()}}
+    shown = [(name, kind) for name, kind in kinds.items() if name in used or name in (AXIS, *required)]
+    return pa.Table.from_pylist(rows, pa.schema(shown))
+
+
+def parquet(document: Frozen) -> bytes:
+    """The table as Parquet."""
+    content = BytesIO()
+    pq.write_table(table_of(document), content)
+    return content.getvalue()
+
+
+def csv(document: Frozen) -> bytes:
+    """The table as CSV, lists as JSON in their cells."""
+    table, content = table_of(document), BytesIO()
+    for place, field in enumerate(table.schema):
+        if is_list(field.type):
+            texts = [None if cell is None else json.dumps(cell) for cell in table[field.name].to_pylist()]
+            table = table.set_column(place, field.name, pa.array(texts, pa.string()))
+    pacsv.write_csv(table, content)
+    return content.getvalue()
+
+
+def axis_of(row: Mapping[str, Any]) -> Axis:
+    """The axis that a row stands for; raises ValidationError as the model does."""
+    application = COLUMNS.application_of(row)
+    if not application["duty_cycle"]["phases"]:
+        del application["duty_cycle"]["phases"]
+    if not application["duty_cycle"]:
+        del application["duty_cycle"]
+    own = {name: row.get(name) for name in ("note", "ordering_code")}
+    return Axis(
+        name=row.get("axis_name"),
+        quantity=row.get("quantity") or 1,
+        without=tuple(row.get("without") or ()),
+        application=_joined(application, json.loads(row["rest"])) if row.get("rest") else application,
+        **own,
+    )
+
+
+def _joined(one: Json, other: Json) -> Json:
+    """An object with everything that is in another one, too."""
+    joined = dict(one)
+    for name, value in other.items():
+        both = isinstance(value, dict) and isinstance(joined.get(name), dict)
+        joined[name] = _joined(joined[name], value) if both else value
+    return joined
+
+
+# --- Cells ------------------------------------------------------------------------------------------------------------
+
+
+def _row(axis: FrozenAxis) -> Json:
+    rest: Json = json.loads(bytes(axis.application))
+    row: Json = {AXIS: axis.number, "axis_name": axis.name, "quantity": axis.quantity, "note": axis.note}
+    row |= {"ordering_code": axis.ordering_code, "without": list(axis.without) or None}
+    row |= _phases(rest) | {column.name: _taken(rest, column) for column in COLUMNS.others.values()}
+    return row | {"rest": json.dumps(rest) if rest else None}
+
+
+def _phases(rest: Json) -> Json:
+    """Lists of the phases of an application, which lacks them then; nothing where a list can't hold one."""
+    cycle = rest.get("duty_cycle")
+    phases = cycle.get("phases") if isinstance(cycle, dict) else None
+    if not isinstance(phases, list) or not phases or not all(map(_is_plain, phases)):
+        return {}
+    assert isinstance(cycle, dict)
+    del cycle["phases"]
+    _drop_empty(rest, "duty_cycle")
+    lists = {name: [phase.get(name) for phase in phases] for name in COLUMNS.phases}
+    return {name: values for name, values in lists.items() if any(value is not None for value in values)}
+
+
+def _is_plain(phase: Any) -> bool:
+    """True for a phase of which a list can hold every field."""
+    if not isinstance(phase, dict) or not phase:
+        return False
+    return all(name in COLUMNS.phases and _fits(COLUMNS.phases[name], value) for name, value in phase.items())
+
+
+def _taken(rest: Json, column: Column) -> Any:
+    """The cell of a column, whose value the application lacks then; None where it has none that fits."""
+    *parts, last = column.path
+    owners = [rest]
+    for part in parts:
+        owner = owners[-1].get(part)
+        if not isinstance(owner, dict):
+            return None
+        owners.append(owner)
+    value = owners[-1].get(last)
+    fits = isinstance(value, list) and value and all(_fits(column, item) for item in value)
+    if value is None or not (fits if column.is_list else _fits(column, value)):
+        return None
+    del owners[-1][last]
+    for owner, part in zip(reversed(owners[:-1]), reversed(parts), strict=True):
+        _drop_empty(owner, part)
+    return json.dumps(value) if column.by_size else value
+
+
+def _fits(column: Column, value: Any) -> bool:
+    """True for a value that the column, or the list in it, can hold."""
+    if value is None:
+        return column.is_list
+    if isinstance(value, bool):
+        return column.kind == "boolean"
+    if isinstance(value, str):
+        return column.kind == "string" and 0 < len(value) <= LONGEST_TEXT
+    if column.by_size and isinstance(value, dict):
+        return all(isinstance(each, float | int) and not isinstance(each, bool) for each in value.values())
+    is_number = isinstance(value, float | int) and column.kind in ("number", "integer")
+    return is_number and abs(value) < LARGEST and (isinstance(value, float) or int(float(value)) == value)
+
+
+def _drop_empty(owner: Json, name: str) -> None:
+    if not owner[name]:
+        del owner[name]
