@@ -20,6 +20,8 @@ from tests.store.test_machines import MOST_BYTES
 LINK = "T=40&n=250&t=0.3&T=32&n=500&t=3&tp=4&i=5"
 QUERIES = {
     "/api/v1/machines/{id}/differences": "from=saved&to=now",
+    "/api/v1/machines/{id}/differences.pdf": "from=saved&to=now",
+    "/api/v1/machines/{id}/differences.xlsx": "from=saved&to=today",
     "/application.json": LINK,
     "/cycle.csv": LINK,
     "/report.pdf": LINK,

@@ -107,7 +107,7 @@ class Export:
         return [c for c in rejected if c.designation != self.candidate.designation][:2]
 
 
-def made_by(maker: str, export: Export, *more: Any, **chosen: Any) -> bytes:
+def made_by(maker: str, export: Any, *more: Any, **chosen: Any) -> bytes:
     """File that a function, named `module:function`, makes of an export: what only names it loads nothing for it."""
     make: Callable[..., bytes] = resolve_name(maker)
     return make(export, *more, **chosen)

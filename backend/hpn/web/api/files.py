@@ -36,7 +36,8 @@ from hpn.words.reader import Reader
 SCHEMA_TYPE = "application/schema+json"
 
 Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by default the browser’s.")]
-Make = Callable[[], Export]
+Make = Callable[[], Any]
+"""Makes what a file is of: the export of a selection or machine, or a document."""
 
 
 Options = dict[str, Any]
@@ -56,7 +57,7 @@ def _metamodel(
 @dataclass(frozen=True, slots=True)
 class File:
     """A kind of file: its name, what the API calls it, its media type, what it is, the function that makes it in a
-    process beside the service, the extra for that, and what of it may be chosen.
+    process beside the service, the extra for that, and what of it may be chosen; its `stem` where it is of no gear.
     """
 
     name: str
@@ -68,12 +69,13 @@ class File:
     disposition: str = "attachment"
     options: Callable[..., Options] = _nothing
     is_translated: bool = True
+    stem: str = ""
 
-    def named(self, export: Export) -> str:
+    def named(self, export: Any) -> str:
         """File name for a download; ASCII, whatever the selection is called."""
-        return f"{export.candidate.designation}.{self.name.rpartition('.')[2]}"
+        return f"{self.stem or export.candidate.designation}.{self.name.rpartition('.')[2]}"
 
-    def content(self, export: Export, reader: Reader, chosen: Options) -> "partial[bytes]":
+    def content(self, export: Any, reader: Reader, chosen: Options) -> "partial[bytes]":
         """The call that makes the file: one that a process can take which knows nothing of the web."""
         return partial(made_by, self.maker, export, *([reader] if self.is_translated else []), **chosen)
 
@@ -105,8 +107,9 @@ posted_files = APIRouter(prefix="/api/v1", tags=["Files"], dependencies=[admit("
 linked_files = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 
 
-def _route(file: File) -> None:
-    content: dict[int | str, dict[str, Any]] = {
+def described(file: File) -> dict[int | str, dict[str, Any]]:
+    """The answer with a file, for the document of the API."""
+    return {
         200: {
             "description": "The file.",
             "content": {file.media_type: {"schema": {"type": "string", "format": "binary"}}},
@@ -114,19 +117,22 @@ def _route(file: File) -> None:
         }
     }
 
+
+def _route(file: File) -> None:
+    content = described(file)
     Chosen = Annotated[Options, Depends(file.options)]
 
     async def of_saved(request: Request, id: schemas.Id, chosen: Chosen, lang: Lang = None) -> Response:
         saved, catalogue = await with_catalogue(request.app.state, id)
-        return await _answer(request, file, lang, chosen, lambda: _of_saved(saved, catalogue, request))
+        return await answer_file(request, file, lang, chosen, lambda: _of_saved(saved, catalogue, request))
 
     async def of_posted(request: Request, chosen: Chosen, lang: Lang = None) -> Response:
         body = await read_body(request)
-        return await _answer(request, file, lang, chosen, lambda: _computed(parsed(Application, body), request))
+        return await answer_file(request, file, lang, chosen, lambda: _computed(parsed(Application, body), request))
 
     async def of_link(request: Request, chosen: Chosen, lang: Lang = None) -> Response:
         query = await query_of(request)
-        return await _answer(request, file, lang, chosen, lambda: _linked(query, request))
+        return await answer_file(request, file, lang, chosen, lambda: _linked(query, request))
 
     shared: dict[str, Any] = {
         "response_class": Response,
@@ -241,7 +247,8 @@ def _of_gear(export: Export, designation: str) -> Export:
 # --- Making it --------------------------------------------------------------------------------------------------------
 
 
-async def _answer(request: Request, file: File, lang: str | None, chosen: Options, make: Make) -> Response:
+async def answer_file(request: Request, file: File, lang: str | None, chosen: Options, make: Make) -> Response:
+    """The file, made on workers; 304 for one that the caller has already."""
     reader = spoken(request, lang)
 
     pool = pool_of(request, "exports")

@@ -170,6 +170,7 @@ class State(NamedTuple):
 
     content: bytes | Machine | None
     catalogue: Catalogue | None
+    line: RevisionLine | None = None
 
 
 async def state_of(request: Request, machine: Machine, label: str) -> State:
@@ -178,18 +179,23 @@ async def state_of(request: Request, machine: Machine, label: str) -> State:
     if label_key(label) == TODAY:
         return State(None, today_s)
     if label_key(label) == NOW:
-        version, content = machine.catalogue_version, machine
-        return State(
-            content, today_s if version == today_s.version else await request.app.state.store.catalogue(version)
-        )
+        return State(machine, await _kept(request, machine.catalogue_version))
     line, frozen = await _revision(request, machine.id, label)
-    version = line.catalogue_version
-    return State(frozen, today_s if version == today_s.version else await request.app.state.store.catalogue(version))
+    return State(frozen, await _kept(request, line.catalogue_version), line)
+
+
+async def _kept(request: Request, version: str) -> Catalogue | None:
+    """Catalogue of a version; None where it is not kept."""
+    catalogue: Catalogue = request.app.state.catalogue
+    if version == catalogue.version:
+        return catalogue
+    kept: Catalogue | None = await request.app.state.store.catalogue(version)
+    return kept
 
 
 def documents_of(one: State, other: State) -> tuple[Frozen, Frozen]:
     """The documents of two states of which one at least is not today."""
-    known = [_frozen_state(each.content) for each in (one, other)]
+    known = [document_of(each.content) for each in (one, other)]
     there = next(each for each in known if each is not None)
     first, second = (
         today(there, state.catalogue) if each is None and state.catalogue else each or there
@@ -203,7 +209,8 @@ def catalogues_of(one: State, other: State) -> tuple[Catalogue | None, Catalogue
     return one.catalogue, other.catalogue
 
 
-def _frozen_state(state: bytes | Machine | None) -> Frozen | None:
+def document_of(state: bytes | Machine | None) -> Frozen | None:
+    """The document of a state; None for today."""
     if isinstance(state, Machine):
         return frozen_of(state, state.items)
     return None if state is None else decode(state)
