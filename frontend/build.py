@@ -29,7 +29,19 @@ COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
 RESULT = ("insight", *DRAWN)
 STYLES = {
     "page.css": (*COMMON, "workbench", *RESULT, "motion", "verdict", "sheet", "phone", "print"),
-    "site.css": (*COMMON, "catalogue", "saved", "selection", *RESULT, "fleet", "verdict", "phone", "print", "paper"),
+    "site.css": (
+        *COMMON,
+        "catalogue",
+        "saved",
+        "selection",
+        *RESULT,
+        "fleet",
+        "machine",
+        "verdict",
+        "phone",
+        "print",
+        "paper",
+    ),
     "report.css": ("tokens", "app", "tools", "fleet", "phone", "print"),
 }
 """Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""

@@ -34,7 +34,7 @@ PAGES = (
     "/selections/compare?a=ID&b=ID",
     "/checks/average_torque",
     "/machines",
-    "/machines/saved",
+    "/machines?show=todo",
 )
 SHORT = (FULL, "/paste", "/catalogue?size=20A", "/catalogue/HPN-20A-5", "/selections", "/nowhere")
 

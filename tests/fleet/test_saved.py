@@ -55,7 +55,7 @@ def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: 
 
     page = client.get(address).text
     assert "Line &lt;4&gt;" in page and "Save as a project" not in page and "Differences today" not in page
-    assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/machines/saved").text
+    assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/machines").text
     assert client.post(f"{address}/delete").status_code == 303
     assert client.get(address).status_code == 404
 

@@ -138,6 +138,8 @@ class WantedLines:
     selected: str | None = None
     updated_since: datetime | None = None
     created_since: datetime | None = None
+    todo: bool = False
+    """Only those with an axis that has no suitable gear."""
 
     def conditions(self) -> Iterator[ColumnElement[bool]]:
         """Conditions for them."""
@@ -155,6 +157,8 @@ class WantedLines:
             yield c.updated >= self.updated_since
         if self.created_since is not None:
             yield c.created >= self.created_since
+        if self.todo:
+            yield c.suitable < c.axes
 
 
 async def read_lines(

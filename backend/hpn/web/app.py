@@ -45,7 +45,17 @@ from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
-from hpn.web.pages import assets, compared, explanations, paste, saved_list, saving, sized_fleets, transfer
+from hpn.web.pages import (
+    assets,
+    compared,
+    explanations,
+    machine_list,
+    paste,
+    saved_list,
+    saving,
+    sized_fleets,
+    transfer,
+)
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import fleets as fleet_pages
@@ -116,6 +126,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     explanations.router,
     paste.router,
     fleet_pages.router,
+    machine_list.router,
     sized_fleets.router,
     transfer.router,
     compared.router,

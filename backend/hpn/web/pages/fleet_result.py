@@ -1,6 +1,6 @@
 """A machine that was sized, on its way into the store and out of it. Arrow is imported by this module."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -9,7 +9,6 @@ import pyarrow as pa
 from msgspec import structs
 
 from hpn import ENGINE_VERSION
-from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import Asked, AxisAnswer, AxisFault, answers
 from hpn.documents.axis import Axis
@@ -17,10 +16,9 @@ from hpn.documents.merge import resolve
 from hpn.explain.comparison import is_same
 from hpn.fleet.columns import AXIS, COLUMNS
 from hpn.fleet.faults import Reason, reasons_of
-from hpn.fleet.listing import NEAREST, AxisRow, rows_of
+from hpn.fleet.listing import NEAREST
 from hpn.fleet.machine import Kept, table_of
 from hpn.fleet.outcome import FAULTS, answer_fields, located
-from hpn.fleet.summary import Summary, summary_of
 from hpn.store import AxisDraft, Machine, MachineDraft, SavedAxis
 from hpn.web.columns import answer_in, common_of, resolved
 from hpn.web.columns import draft_of as draft_of_axis
@@ -48,19 +46,6 @@ def _axis(row: Mapping[str, Any], own: dict[str, Any], answer: AxisAnswer) -> Ax
 def _fault(reason: Reason) -> AxisFault:
     """Fault of a cell, whose place is the column of the table."""
     return AxisFault.at(f"/{reason.column.replace('.', '/')}", reason.sentence, reason.code)
-
-
-class Shown(NamedTuple):
-    """A machine that was kept, ready to be shown."""
-
-    summary: Summary
-    rows: list[AxisRow]
-
-
-def shown_of(machine: Machine) -> Shown:
-    """Counts and rows of a machine."""
-    table = answers_of(machine)
-    return Shown(summary_of(table.to_batches()), rows_of(table))
 
 
 def answers_of(machine: Machine) -> pa.Table:
@@ -98,14 +83,6 @@ def _reason(fault: AxisFault) -> Reason:
         return Reason("", fault.code, fault.told)
     found = located(0, fault.location, fault.told, fault.code)
     return Reason(found.column, found.code, found.reason)
-
-
-def asked_of(machine: Machine, places: Collection[int]) -> list[tuple[int, str, Application]]:
-    """Place, name and application of some axes, of those that have one."""
-    common = common_of(machine)
-    shown = [(place, axis) for place, axis in enumerate(machine.items, 1) if place in places]
-    found = ((place, axis, resolved(axis, common).application) for place, axis in shown)
-    return [(place, axis.name or str(axis.number), application) for place, axis, application in found if application]
 
 
 # --- Today ------------------------------------------------------------------------------------------------------------

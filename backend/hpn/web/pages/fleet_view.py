@@ -1,9 +1,8 @@
-"""A fleet as the templates show it, in a page or in the file of a report."""
+"""A fleet as the template of a report shows it."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
-from urllib.parse import urlencode
+from typing import TYPE_CHECKING
 
 from hpn.catalogue import Catalogue
 from hpn.engine.checks import allowed
@@ -20,31 +19,6 @@ SHOWN = {
     "rejected": N_("rejected"),
 }
 """Filters of axes."""
-
-ROWS_ON_PAGE = 100
-
-ORDERS: Mapping[str, Callable[["AxisRow"], Any]] = {
-    "place": lambda row: row.place,
-    "axis": lambda row: row.axis.casefold(),
-    "gear": lambda row: row.gear,
-    "utilisation": lambda row: row.utilisation,
-    "check": lambda row: row.governing_check,
-    "life": lambda row: row.life and row.life.hours,
-    "suitable": lambda row: row.suitable,
-    "runner_up": lambda row: row.runner_up,
-    "torque": lambda row: row.average_torque_Nm,
-}
-"""Columns that axes are sorted by, by the names of an address."""
-
-SORTINGS = {
-    "": N_("utilisation"),
-    "place": N_("number"),
-    "axis": N_("axis"),
-    "gear": N_("gear"),
-    "check": N_("governing check"),
-    "life": N_("shortest life"),
-}
-"""Orders that are offered by name, where the headings of a table don’t stand beside."""
 
 
 def by_need(rows: Iterable["AxisRow"]) -> list["AxisRow"]:
@@ -66,7 +40,7 @@ def foremost(rows: Iterable["AxisRow"]) -> "AxisRow | None":
 
 @dataclass(frozen=True)
 class FleetView:
-    """A fleet as the templates show it. Nothing here is chosen or sorted by address; a page says how it is."""
+    """A fleet as the template shows it; its script sorts and filters."""
 
     summary: "Summary"
     rows: Sequence["AxisRow"]
@@ -102,81 +76,3 @@ class FleetView:
     def order_of(self, key: str) -> str:
         """Order of the axes by a column; blank where there is none."""
         return ""
-
-
-@dataclass(frozen=True)
-class Chosen:
-    """Filter and order of the axes of a page, from its address."""
-
-    show: str = ""
-    gear: str = ""
-    check: str = ""
-    search: str = ""
-    sort: str = ""
-    part: int = 1
-
-    @classmethod
-    def of(cls, query: Mapping[str, str]) -> "Chosen":
-        """Choice of an address; a wrong name in it counts as none."""
-        given = {name: query.get(name, "")[:200] for name in ("show", "gear", "check", "search", "sort")}
-        given["show"] = given["show"] if given["show"] in SHOWN else ""
-        given["sort"] = given["sort"] if given["sort"].removeprefix("-") in ORDERS else ""
-        part = query.get("part", "")
-        number = int(part) if part.isascii() and part.isdigit() and len(part) < 6 else 1
-        return cls(**given, part=max(number, 1))
-
-    def out_of(self, rows: Sequence["AxisRow"]) -> list["AxisRow"]:
-        """Rows that are shown, in their order."""
-        search = self.search.strip().casefold()
-        found = [
-            row
-            for row in rows
-            if (not self.show or row.state == self.show)
-            and (not self.gear or (row.state == "selected" and row.gear == self.gear))
-            and (not self.check or (row.state == "selected" and row.governing_check == self.check))
-            and search in row.axis.casefold()
-        ]
-        if not self.sort:
-            return by_need(found)
-        key = ORDERS[self.sort.removeprefix("-")]
-        valued = [row for row in found if row.state != "rejected" and key(row) is not None]
-        valued.sort(key=key, reverse=self.sort.startswith("-"))
-        return valued + [row for row in found if row.state == "rejected" or key(row) is None]
-
-    def address(self, path: str, **changes: str | int) -> str:
-        """Address of a page that shows the same but for some changes."""
-        pairs = {name: value for name, value in {**self.__dict__, **changes}.items() if value not in ("", 1)}
-        return f"{path}?{urlencode(pairs)}" if pairs else path
-
-
-@dataclass(frozen=True)
-class FleetPageView(FleetView):
-    """The same with addresses, for a page that shows some axes at a time."""
-
-    path: str = ""
-    chosen: Chosen = field(default_factory=Chosen)
-    count: int = 0
-
-    nothing_chosen = Chosen()
-
-    def choose(self, name: str, value: str) -> str:
-        """See FleetView."""
-        return Chosen().address(self.path, **{name: value}) + "#axes-heading"
-
-    def sorted_by(self, key: str) -> str:
-        """See FleetView."""
-        turned = f"-{key}" if self.chosen.sort == key else key
-        return self.chosen.address(self.path, sort=turned, part=1) + "#axes-heading"
-
-    def order_of(self, key: str) -> str:
-        """See FleetView."""
-        return {key: "ascending", f"-{key}": "descending"}.get(self.chosen.sort or "-utilisation", "")
-
-    @property
-    def parts(self) -> int:
-        """Number of parts in which the axes are shown."""
-        return max(1, -(-self.count // ROWS_ON_PAGE))
-
-    def part(self, number: int) -> str:
-        """Address of one of them, blank where there is none."""
-        return self.chosen.address(self.path, part=number) + "#axes-heading" if 1 <= number <= self.parts else ""

@@ -27,14 +27,14 @@ from hpn.tables.table import Table
 from hpn.web.door.access import admit
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
-from hpn.web.door.pools import compute, compute_beside, worked
+from hpn.web.door.pools import compute, compute_beside
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import worked as worked_beside
 from hpn.web.form.symbols import AXIS_INPUTS
+from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.reading import work_of
 from hpn.web.pages.rendering import page
-from hpn.web.pages.sized_fleets import ADDRESS
 from hpn.words.wording import N_, Quantity, Sentence
 
 NO_ROOM_SECONDS = 3600
@@ -97,11 +97,6 @@ class Taken(NamedTuple):
 # --- Uploading --------------------------------------------------------------------------------------------------------
 
 
-def start(request: Request) -> Response:
-    """The page with an empty form."""
-    return page(request, "fleets.html", draft=Draft(), problems=(), **_WORDS)
-
-
 async def upload(request: Request) -> Response:
     """Shows how each column is read, or sizes the axes and leads to their page."""
     draft, headers = Draft(), {}
@@ -120,7 +115,7 @@ async def upload(request: Request) -> Response:
         refused = Problem.of(error)
         status, problems = refused.status_code, refused.sentences or (Sentence(UNAVAILABLE),)
         headers = dict(refused.headers or {})
-    shown = {"draft": draft, "problems": problems, **_WORDS}
+    shown = {"draft": draft, "problems": problems, **WORDS}
     response = await compute(request, "pages", page, request, "fleets.html", status, **shown)
     response.headers.update(headers)
     return response
@@ -205,12 +200,12 @@ def _kept(*arguments: Any) -> MachineDraft:
     return draft_of(*arguments)
 
 
-_WORDS: dict[str, Any] = {
+WORDS: dict[str, Any] = {
     "roles": AXIS_INPUTS.by_role,
     "example_head": EXAMPLE_HEAD,
     "example_axes": EXAMPLE_AXES,
 }
+"""What the form for a table, and the example beside it, are made of."""
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
-router.add_api_route(ADDRESS, worked(start), dependencies=[admit("calculator")])
 router.add_api_route(ADDRESS, upload, methods=["POST"], dependencies=[admit("batch")])

@@ -27,14 +27,13 @@ from hpn.web.door.problems import Problem, needs
 from hpn.web.form.labels import FIELDS, TITLE_BLOCK
 from hpn.web.machines import require_seen
 from hpn.web.pages.explanations import reads_pages
-from hpn.web.pages.fleet_view import ROWS_ON_PAGE, SHOWN, SORTINGS, Chosen, FleetPageView, foremost, weights_of
+from hpn.web.pages.machine_view import ADDRESS, SHOWN, Chosen, MachineView, opened
 from hpn.web.pages.rendering import or_reason, page, reason
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.words.reader import Reader
 from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
 
-ADDRESS = "/machines"
 OLDER_ADDRESS = "/fleets"
 MEDIA_TYPES = {
     "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
@@ -80,31 +79,24 @@ async def show(request: Request) -> Response:
 
 
 async def _shown(request: Request, saved: Machine, status: int, form: TitleBlock) -> Response:
+    latest = await request.app.state.store.revisions(saved.id) if saved.revisions else []
+    since = latest[0].created if latest else None
+    view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params), since)
     today = await _today(request, saved)
-    return await compute(request, "pages", _page, request, saved, status, form, today)
+    return await compute(request, "pages", _page, request, view, status, form, today)
 
 
-def _page(request: Request, saved: Machine, status: int, form: TitleBlock, today: list[Any] | None) -> Response:
-    from hpn.web.pages import fleet_report, fleet_result
-
-    summary, rows = fleet_result.shown_of(saved)
-    chosen = Chosen.of(request.query_params)
-    found = chosen.out_of(rows)
-    part = found[(chosen.part - 1) * ROWS_ON_PAGE : chosen.part * ROWS_ON_PAGE]
-    top = foremost(rows)
-    asked = fleet_result.asked_of(saved, {row.place for row in (*part, *((top,) if top else ()))})
-    links, allowed = fleet_report.links_of(asked), fleet_report.allowed_of(asked)
-    weights = weights_of(request.app.state.catalogue)
-    view = FleetPageView(summary, part, links, allowed, top, weights, f"{ADDRESS}/{saved.id}", chosen, len(found))
+def _page(request: Request, view: MachineView, status: int, form: TitleBlock, today: list[Any] | None) -> Response:
+    shown = [*view.rows, *([view.top] if view.top else [])]
     return page(
         request,
-        "fleet.html",
+        "machine.html",
         status,
-        saved=saved,
+        saved=view.machine,
         view=view,
+        opened=opened(view, shown),
         form=form,
         shown=SHOWN,
-        sortings=SORTINGS,
         today=today,
         engine_version=ENGINE_VERSION,
         catalogue_version=request.app.state.catalogue.version,
@@ -201,16 +193,10 @@ async def _require_same(request: Request, names: Mapping[str, str | None]) -> No
         raise Problem(412, SAVED_MEANWHILE)
 
 
-@or_reason(REASON)
-async def show_saved(request: Request) -> Response:
-    """Saved fleets, newest first."""
-    cursor = request.query_params.get("cursor") or None
-    try:
-        lines, following = await request.app.state.store.machines(cursor)
-    except ValueError:
-        return RedirectResponse(f"{ADDRESS}/saved", 303)
-    shown = {"lines": lines, "following": following, "later": bool(cursor)}
-    return await compute(request, "pages", page, request, "fleets_saved.html", **shown)
+async def lead_to_list(request: Request) -> Response:
+    """Leads from the address that the list had before."""
+    query = request.scope["query_string"]
+    return RedirectResponse(ADDRESS + (f"?{quote(query, safe=punctuation)}" if query else ""), 308)
 
 
 @or_reason(REASON)
@@ -242,7 +228,7 @@ async def delete(request: Request) -> Response:
     if not await request.app.state.store.delete(saved.id, version, "machine"):
         raise Problem(404, GONE) if version is None else changed_since()
     note(request, fleet=saved.id)
-    return RedirectResponse(f"{ADDRESS}/saved", 303)
+    return RedirectResponse(ADDRESS, 303)
 
 
 async def _own(request: Request) -> Machine:
@@ -261,7 +247,7 @@ async def lead_on(request: Request) -> Response:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
-router.add_api_route(f"{ADDRESS}/saved", show_saved, dependencies=[admit("listing")])
+router.add_api_route(f"{ADDRESS}/saved", lead_to_list, dependencies=[admit("listing")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}", show, dependencies=[admit("reading")])
 router.add_api_route(f"{ADDRESS}/{{fleet}}", save, methods=["POST"], dependencies=[admit("writing")])
 for suffix in MEDIA_TYPES:

@@ -1,0 +1,399 @@
+"""The working copy of a machine as its page shows it: its axes as the address chooses them, and what they come to."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from functools import cached_property
+from typing import Any, NamedTuple
+from urllib.parse import urlencode
+
+from hpn.account.readings import Life, life_of
+from hpn.application import Application, InputError
+from hpn.catalogue import Catalogue
+from hpn.documents.axis import Json
+from hpn.documents.common import COMMON, flat
+from hpn.documents.gears import GearOrder, Placed, gears_of
+from hpn.engine.checks import allowed
+from hpn.engine.remedy import condition_of
+from hpn.engine.selection import select
+from hpn.engine.tried import needed_of
+from hpn.fleet.faults import Reason
+from hpn.store import Machine, SavedAxis
+from hpn.web.columns import answer_in, common_of, own_of, resolved, without_of
+from hpn.web.door.access import MAXIMUM_QUERY_BYTES
+from hpn.web.form.labels import query_of
+from hpn.web.form.link_writer import to_link
+from hpn.web.form.symbols import BY_PATH, Symbol
+from hpn.words.titles import faults_of
+from hpn.words.wording import N_, Sentence
+
+ADDRESS = "/machines"
+ROWS_ON_PAGE = 100
+
+SHOWN = {"": N_("All"), "todo": N_("To do"), "changed": N_("Changed")}
+"""Filters of axes: those without a suitable gear, and those changed since the latest revision."""
+
+MARGINS = ("unsuitable", "unrated", "open", "suitable")
+"""Verdicts in the order in which axes need somebody."""
+
+
+class Row(NamedTuple):
+    """An axis with its place in the machine; its figures are those of its gear, or of the nearest miss."""
+
+    place: int
+    axis: SavedAxis
+
+    @property
+    def name(self) -> str:
+        """Its name, else its number."""
+        return self.axis.name or str(self.axis.number)
+
+    @property
+    def answer(self) -> Mapping[str, Any]:
+        """Columns of its answer."""
+        return self.axis.answer
+
+    @property
+    def status(self) -> str:
+        """Verdict on its gear."""
+        status: str = self.axis.answer["status"]
+        return status
+
+    @property
+    def gear(self) -> str | None:
+        """Designation that the figures are of; None for an open axis."""
+        gear: str | None = self.axis.answer["designation"]
+        return gear
+
+    @property
+    def code(self) -> str:
+        """Rest of its ordering code behind the designation."""
+        code, gear = self.axis.ordering_code or "", self.gear or ""
+        return code.removeprefix(gear) if gear and code.startswith(gear) else ""
+
+    @property
+    def life(self) -> Life | None:
+        """Shortest life; None where it is not known."""
+        answer = self.axis.answer
+        of = answer["shortest_life_of"]
+        endless = of is None and answer["status"] == "suitable" and '"shortest_life_h"' not in answer["unknown"]
+        return life_of(answer["shortest_life_h"], of) if of or endless else None
+
+
+def _figure(name: str) -> Callable[[Row], Any]:
+    return lambda row: row.axis.answer[name]
+
+
+ORDERS: Mapping[str, Callable[[Row], Any]] = {
+    "place": lambda row: row.place,
+    "number": lambda row: row.axis.number,
+    "axis": lambda row: row.name.casefold(),
+    "quantity": lambda row: row.axis.quantity,
+    "gear": _figure("designation"),
+    "utilisation": _figure("utilisation"),
+    "check": _figure("governing_check"),
+    "life": lambda row: row.life and row.life.hours,
+    "frequency": _figure("natural_frequency_Hz"),
+}
+"""Columns that axes are sorted by, by the names of an address."""
+
+SORTINGS = {
+    "": N_("utilisation"),
+    "place": N_("order of the machine"),
+    "axis": N_("axis"),
+    "gear": N_("gear"),
+    "check": N_("governing check"),
+    "life": N_("shortest life"),
+}
+"""Orders that are offered by name."""
+
+
+def _by_need(rows: Iterable[Row]) -> list[Row]:
+    """Axes without a suitable gear first, the worst of them before all, then the others by falling utilisation."""
+
+    def need(row: Row) -> tuple[int, bool, float]:
+        used = row.answer["utilisation"]
+        return MARGINS.index(row.status), used is not None, -(used or 0)
+
+    return sorted(rows, key=need)
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Filter and order of the axes, from an address; a wrong name in it counts as none."""
+
+    show: str = ""
+    gear: str = ""
+    search: str = ""
+    sort: str = ""
+    part: int = 1
+
+    @classmethod
+    def of(cls, query: Mapping[str, str]) -> "Chosen":
+        """Choice of an address."""
+        given = {name: query.get(name, "")[:200] for name in ("show", "gear", "search", "sort")}
+        given["show"] = given["show"] if given["show"] in SHOWN else ""
+        given["sort"] = given["sort"] if given["sort"].removeprefix("-") in ORDERS else ""
+        part = query.get("part", "")
+        number = int(part) if part.isascii() and part.isdigit() and len(part) < 6 else 1
+        return cls(**given, part=max(number, 1))
+
+    def out_of(self, rows: Sequence[Row], since: datetime | None) -> list[Row]:
+        """Rows that are shown, in their order."""
+        word = self.search.strip().casefold()
+        found = [
+            row
+            for row in rows
+            if (self.show != "todo" or row.status != "suitable")
+            and (self.show != "changed" or is_changed(row, since))
+            and (not self.gear or row.gear == self.gear)
+            and any(word in text.casefold() for text in (row.name, row.gear or "", row.axis.ordering_code or ""))
+        ]
+        if not self.sort:
+            return _by_need(found)
+        key = ORDERS[self.sort.removeprefix("-")]
+        valued = [row for row in found if key(row) is not None]
+        valued.sort(key=key, reverse=self.sort.startswith("-"))
+        return valued + [row for row in found if key(row) is None]
+
+    def address(self, path: str, **changes: str | int) -> str:
+        """Address of a page that shows the same but for some changes."""
+        pairs = {name: value for name, value in {**self.__dict__, **changes}.items() if value not in ("", 1)}
+        return f"{path}?{urlencode(pairs)}" if pairs else path
+
+
+def is_changed(row: Row, since: datetime | None) -> bool:
+    """True for an axis that was changed after the latest revision; never without one."""
+    return since is not None and row.axis.updated > since
+
+
+class Shown(NamedTuple):
+    """A value of a field, as a common one or an axis's own; None where a common value does not hold for the axis."""
+
+    symbol: Symbol
+    value: Any
+
+
+SHORT = ("requirements.utilisation", "requirements.life_h", "output_load.life_h", "output_load.load_coefficient")
+IN_ORDER = (*SHORT, *(path for path in COMMON if path not in SHORT))
+"""Fields that may be common, those that most machines have first."""
+
+
+def common_values(common: Mapping[str, Any]) -> list[Shown]:
+    """Common values of a machine."""
+    return _shown(dict(flat(common)))
+
+
+def own_values(axis: SavedAxis) -> list[Shown]:
+    """Values that an axis has of its own where there might be a common one; None where it does without one."""
+    return _shown({**dict(flat(_parts(own_of(axis)))), **dict.fromkeys(without_of(axis))})
+
+
+def _parts(own: Json) -> Json:
+    """Those parts of an axis's own values that common ones stand in for, whatever else was sent."""
+    return {name: own[name] for name in ("requirements", "output_load", "application_area", "rank_by") if name in own}
+
+
+def _shown(values: Mapping[str, Any]) -> list[Shown]:
+    named = ((BY_PATH.get(tuple(path.split("."))), path) for path in IN_ORDER if path in values)
+    return [Shown(symbol, _plain(values[path])) for symbol, path in named if symbol is not None]
+
+
+def _plain(value: Any) -> Any:
+    """A value as it can be shown, whatever an axis was sent with: a number, a text, or texts of a list."""
+    if isinstance(value, list):
+        return [str(_plain(each)) for each in value[:20]]
+    if isinstance(value, Mapping):
+        return _plain([f"{name}: {_plain(each)}" for name, each in value.items()])
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return value if value is None else str(value)[:40]
+    return value if abs(value) < LARGEST else "…"
+
+
+LARGEST = 1e15
+"""Number beyond every bound of an input."""
+
+
+def bound_of(row: Row, common: Mapping[str, Any]) -> float:
+    """Largest utilisation with which the governing check of an axis passes."""
+    values = {**dict(flat(common)), **dict.fromkeys(without_of(row.axis)), **dict(flat(_parts(own_of(row.axis))))}
+    u = values.get("requirements.utilisation")
+    return allowed(row.answer["governing_check"], u if isinstance(u, float | int) and 0 < u <= 1 else 1.0)
+
+
+@dataclass(frozen=True)
+class MachineView:
+    """A machine with those axes that its page shows."""
+
+    machine: Machine
+    catalogue: Catalogue
+    chosen: Chosen = field(default_factory=Chosen)
+    since: datetime | None = None
+    """Time of the latest revision."""
+
+    nothing_chosen = Chosen()
+    orders = SORTINGS
+
+    @cached_property
+    def path(self) -> str:
+        """Address of the machine."""
+        return f"{ADDRESS}/{self.machine.id}"
+
+    @cached_property
+    def all(self) -> list[Row]:
+        """All its axes."""
+        return [Row(place, axis) for place, axis in enumerate(self.machine.items, 1)]
+
+    @cached_property
+    def common(self) -> Json:
+        """Its common values."""
+        return common_of(self.machine)
+
+    @cached_property
+    def found(self) -> list[Row]:
+        """Axes that the address chooses."""
+        return self.chosen.out_of(self.all, self.since)
+
+    @cached_property
+    def rows(self) -> list[Row]:
+        """Those of them on this part."""
+        return self.found[(self.chosen.part - 1) * ROWS_ON_PAGE : self.chosen.part * ROWS_ON_PAGE]
+
+    @cached_property
+    def counts(self) -> Mapping[str, int]:
+        """Numbers of axes by verdict."""
+        found = dict.fromkeys(MARGINS, 0)
+        for row in self.all:
+            found[row.status] += 1
+        return found
+
+    def showing(self, show: str) -> int:
+        """Number of axes that a filter shows."""
+        if show == "changed":
+            return sum(is_changed(row, self.since) for row in self.all)
+        return len(self.all) - (self.counts["suitable"] if show == "todo" else 0)
+
+    @cached_property
+    def top(self) -> Row | None:
+        """The suitable axis that is used most."""
+        used = [row for row in self.all if row.status == "suitable" and row.answer["utilisation"] is not None]
+        return max(used, key=lambda row: row.answer["utilisation"], default=None)
+
+    @cached_property
+    def has_frequency(self) -> bool:
+        """True where an axis has a natural frequency."""
+        return any(row.answer["natural_frequency_Hz"] is not None for row in self.all)
+
+    @cached_property
+    def order(self) -> GearOrder:
+        """Gears to order."""
+        return gears_of(map(placed, self.machine.items), self.catalogue)
+
+    @cached_property
+    def kinds(self) -> int:
+        """Number of kinds of gears."""
+        return len({gear.designation for gear in self.order.gears})
+
+    @cached_property
+    def quantity(self) -> int:
+        """Number of gears."""
+        return sum(gear.quantity for gear in self.order.gears)
+
+    def bound(self, row: Row) -> float:
+        """Largest utilisation with which the governing check of an axis passes."""
+        return bound_of(row, self.common)
+
+    def own(self, row: Row) -> list[Shown]:
+        """Values that an axis has of its own."""
+        return own_values(row.axis)
+
+    @cached_property
+    def values(self) -> list[Shown]:
+        """Common values."""
+        return common_values(self.common)
+
+    def is_changed(self, row: Row) -> bool:
+        """True for an axis that was changed after the latest revision."""
+        return is_changed(row, self.since)
+
+    # --- Addresses ----------------------------------------------------------------------------------------------------
+
+    def choose(self, name: str, value: str) -> str:
+        """Address of the axes of a filter."""
+        return Chosen().address(self.path, **{name: value}) + "#axes-heading"
+
+    def show(self, value: str) -> str:
+        """Address of the axes of another filter in the same order."""
+        return self.chosen.address(self.path, show=value, part=1) + "#axes-heading"
+
+    def sorted_by(self, key: str) -> str:
+        """Address of the axes in the order of a column."""
+        turned = f"-{key}" if self.chosen.sort == key else key
+        return self.chosen.address(self.path, sort=turned, part=1) + "#axes-heading"
+
+    def order_of(self, key: str) -> str:
+        """Order of the axes by a column; blank where there is none."""
+        return {key: "ascending", f"-{key}": "descending"}.get(self.chosen.sort or "-utilisation", "")
+
+    @property
+    def parts(self) -> int:
+        """Number of parts in which the axes are shown."""
+        return max(1, -(-len(self.found) // ROWS_ON_PAGE))
+
+    def part(self, number: int) -> str:
+        """Address of one of them, blank where there is none."""
+        return self.chosen.address(self.path, part=number) + "#axes-heading" if 1 <= number <= self.parts else ""
+
+
+def placed(axis: SavedAxis) -> Placed:
+    """An axis by what counts for the order of gears."""
+    return Placed(axis.number, axis.quantity, axis.ordering_code, axis.answer["selected"])
+
+
+# --- Of single axes ---------------------------------------------------------------------------------------------------
+
+MOST_REMEDIES = 5
+"""Axes without a suitable gear whose remedies a page works out; the others say theirs once they are opened."""
+
+
+class Opened(NamedTuple):
+    """What the row of an axis says beyond its columns: its link, why it is open, and what would make its gear fit."""
+
+    link: str = ""
+    reasons: tuple[Reason, ...] = ()
+    remedies: tuple[Sentence, ...] = ()
+
+
+def opened(view: MachineView, rows: Iterable[Row]) -> dict[int, Opened]:
+    """The same of some axes, by their numbers."""
+    found: dict[int, Opened] = {}
+    worked_out = 0
+    for row in rows:
+        application, remedies = resolved(row.axis, view.common).application, tuple[Sentence, ...]()
+        if application and row.status == "unsuitable" and worked_out < MOST_REMEDIES:
+            worked_out, remedies = worked_out + 1, _remedies(row, application, view.catalogue)
+        reasons = _reasons(row) if row.status == "open" else ()
+        found[row.axis.number] = Opened(link_of(row, application) if application else "", reasons, remedies)
+    return found
+
+
+def _reasons(row: Row) -> tuple[Reason, ...]:
+    from hpn.web.pages.fleet_result import reasons  # needs Arrow
+
+    return tuple(reasons(answer_in(row.answer).faults))
+
+
+def link_of(row: Row, application: Application) -> str:
+    """Address of an axis in the workbench; blank where it is too long for one."""
+    titled = "" if any(faults_of(row.name)) else query_of({"title": row.name})
+    link = to_link(application) + titled
+    return link if len(link) <= MAXIMUM_QUERY_BYTES else ""
+
+
+def _remedies(row: Row, application: Application, catalogue: Catalogue) -> tuple[Sentence, ...]:
+    """Changes that each alone make the nearest gear fit."""
+    try:
+        candidate = select(application, catalogue).candidate(row.gear or "")
+    except InputError:
+        return ()
+    return tuple(map(condition_of, needed_of(candidate, application, catalogue))) if candidate else ()
