@@ -26,7 +26,7 @@ DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 """Style sheets of drawings, which the report uses too, and of plots."""
 
 COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
-RESULT = ("insight", *DRAWN)
+RESULT = ("insight", "tabs", *DRAWN)
 STYLES = {
     "page.css": (*COMMON, "workbench", *RESULT, "motion", "verdict", "sheet", "phone", "print"),
     "site.css": (

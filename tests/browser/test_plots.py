@@ -156,8 +156,6 @@ def test_data_and_library_of_a_plot_come_when_somebody_unfolds_it(visitor: Visit
 
 def test_all_sizes_stand_below_the_gear_s_own_and_follow_what_is_typed(visitor: Visitor) -> None:
     page = visitor.open(PHASES + "#bearing")
-    drawing = page.get_by_role("figure", name="Permissible load of each size")
-    expect(drawing.locator("text.name").locator("visible=true")).to_have_count(4)
     assert len([t for t in drawn(page, "of each size")["data"] if t["meta"]["kind"] in ("size", "limit")]) == 4
     table = page.get_by_role("table", name="Sizes that carry the load")
     expect(table.get_by_role("row", name=re.compile("14A"))).to_contain_text("does not carry it")
@@ -172,9 +170,9 @@ def test_of_two_questions_only_the_figure_that_fails_is_marked(visitor: Visitor)
     page = visitor.open("/?T=40&n=250&t=0.3&T=32&n=500&t=3&FR=1200#bearing")
     row = page.get_by_role("table", name="Sizes that carry the load").get_by_role("row", name=re.compile("20A"))
     weight = "cell => getComputedStyle(cell.firstElementChild).fontWeight"
-    cycle, phase = row.get_by_role("cell").nth(2), row.get_by_role("cell").nth(3)
+    phase, cycle = row.get_by_role("cell").nth(1), row.get_by_role("cell").nth(3)
     assert float(cycle.inner_text().split()[0]) > 100 > float(phase.inner_text().split()[0])
-    assert (cycle.evaluate(weight), phase.evaluate(weight)) == ("600", "400")
+    assert (cycle.evaluate(weight), phase.evaluate(weight)) == ("620", "500")
 
 
 def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visitor: Visitor) -> None:

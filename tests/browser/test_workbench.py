@@ -193,13 +193,11 @@ def test_a_cell_that_is_blanked_leaves_no_result_as_if_it_were_valid(visitor: Vi
         page.locator(name) for name in (".tabs", "#jump strong", "#cycle svg", "#overview")
     ]  # the second is the verdict on a phone
     muted = page.evaluate("getComputedStyle(document.querySelector('.hint')).color")
-    for part in shown:
-        expect(part).to_have_css("opacity", "0.55")
-    for part in (selected(page), page.locator(".largest .percent")):
+    for part in (*shown, selected(page), page.locator(".largest .percent")):
         expect(part).to_have_css("color", muted)
     page.get_by_label("Speed, phase 2").fill("500")
     for part in shown:
-        expect(part).to_have_css("opacity", "1")
+        expect(part).not_to_have_css("color", muted)
     expect(selected(page)).not_to_have_css("color", muted)
 
 

@@ -130,8 +130,8 @@ def test_the_saved_page_has_the_chart_of_the_cycle_the_envelope_and_the_life_of_
     assert 'class="line limit"' in bearing
     if query == LOADED:
         assert "The largest single load governs." in bearing
-        drawn = [phases(drawing, "mark load") for drawing in drawings_in(bearing)]
-        assert drawn == 4 * [["0", "1", "2"]]  # this size, all sizes, each for two places
+        drawn = [phases(drawing, "mark load") for drawing in drawings_in(bearing) if 'class="drawing' in drawing]
+        assert drawn == 2 * [["0", "1", "2"]]  # for a narrow and for a wide place
         assert "75\u202f594" in unescape(bearing)
     else:
         assert "Add a load" not in bearing
@@ -173,4 +173,4 @@ def test_a_load_beside_the_shafts_centre_stands_with_what_it_counts_there(client
         " ", "\u202f"
     )
     assert re.search(r'<span class="percent"[^>]*>71\u202f%', part)
-    assert "an upper bound for any bearing spacing" in page and "can’t be judged" not in part
+    assert "n upper bound for any bearing spacing" in page and "can’t be judged" not in part

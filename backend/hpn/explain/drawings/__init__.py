@@ -8,6 +8,7 @@ from hpn.explain.drawings.chart import chart
 from hpn.explain.drawings.cycle import cycle_picture
 from hpn.explain.drawings.envelope import gear_envelope, published_condition
 from hpn.explain.drawings.layout import Figure
+from hpn.explain.drawings.picture import default_condition
 from hpn.explain.drawings.pictures import Pictures
 from hpn.explain.drawings.plane import Plane
 from hpn.explain.drawings.subject import Subject
@@ -19,6 +20,7 @@ __all__ = [
     "Subject",
     "chart",
     "cycle_picture",
+    "default_condition",
     "gear_envelope",
     "published_condition",
 ]

@@ -3,7 +3,7 @@
 One description for every page and for the report: `chart` makes it, a style sheet gives it its colours.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, degrees, hypot, isfinite
@@ -104,8 +104,9 @@ class Mark:
 class Scene:
     """Content of a plane: limits, points, and a ray.
 
-    The ray leads from the origin to its first point, and on to the limit in its direction. `beyond` are rows that name
-    limits outside of what is drawn; a corner at infinity is at the end of its axis.
+    The ray leads from the origin to its first point, and on to the limit in its direction. A lever leads from a load
+    where it acts to the load that it stands for. `beyond` are rows that name limits outside of what is drawn; a corner
+    at infinity is at the end of its axis.
     """
 
     lines: Sequence[Line]
@@ -113,6 +114,7 @@ class Scene:
     ray: tuple[Point, Point] | None = None
     axes: Axes = LOADS
     beyond: Sequence[str] = ()
+    levers: Sequence[tuple[Point, Point]] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,8 +149,8 @@ def chart(scene: Scene, reader: Reader, size: Point = SMALL) -> Element:
     """A scene as an SVG drawing."""
     lines, marks, ray, axes = scene.lines, scene.marks, scene.ray, scene.axes
     points = [*(corner for line in lines for corner in line.corners), *(mark.place for mark in marks)]
-    bold = [corner for line in lines if line.strong and line.label for corner in (line.corners[0], line.corners[-1])]
-    frame = _frame(points, bold, axes, size, reader)
+    bold = list(_bold(lines))
+    frame = _frame(points, [corner for corner, _ in bold], axes, size, reader)
     drawing = canvas(KINDS[size], size[0], size[1] + ROW * len(scene.beyond))
     still = add(drawing, "g", "still", aria_hidden="true")
     places = Places(frame.room)
@@ -163,11 +165,21 @@ def chart(scene: Scene, reader: Reader, size: Point = SMALL) -> Element:
     if ray:
         add(still, "path", "ray", d=path([frame.at((0, 0)), frame.at(ray[0])]))
         add(still, "path", "ray rest", d=path([frame.at(ray[0]), frame.at(_within(frame, ray[1]))]))
+    for lever in scene.levers:
+        add(still, "path", "lever", d=path(frame.at(point) for point in lever))
     _marks(drawing, frame, marks, places)
     _labels(drawing, frame, lines, places)
     for row, names in enumerate(scene.beyond):
         text(still, "beyond", (size[0] - RIGHT, size[1] + ROW * row + 12), names, "end")
     return drawing
+
+
+def _bold(lines: Sequence[Line]) -> Iterator[tuple[Point, str]]:
+    """Ends of the lines whose values stand on the axes in bold, the governing first, with the kind of their number."""
+    for kind, of_kind in (("tick own governing", True), ("tick own", False)):
+        for line in lines:
+            if line.label and ("governing" in line.kind) == of_kind and (of_kind or line.strong):
+                yield from ((line.corners[end], kind) for end in (0, -1))
 
 
 def _within(frame: Frame, point: Point) -> Point:
@@ -198,26 +210,24 @@ def _upwards(largest: float, axes: Axes, reader: Reader) -> list[tuple[float, st
     return [(number, reader.power_of_ten(round(number))) for number, _ in numbers] if axes.powers else numbers
 
 
-def _axes(drawing: Element, frame: Frame, bold: Sequence[Point], reader: Reader) -> None:
+def _axes(drawing: Element, frame: Frame, bold: Sequence[tuple[Point, str]], reader: Reader) -> None:
     """Both axes with titles and round numbers, and in bold the values at which the corners of a limit meet them."""
     box, axes = frame.box, frame.axes
     strokes = [path([(box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)])]
-    own = [(corner[1], reader.figure(corner[1], axes.up_unit)) for corner in bold if corner[0] == 0]
+    own = [(corner[1], reader.figure(corner[1], axes.up_unit), kind) for corner, kind in bold if corner[0] == 0]
     taken: list[Point] = []
-    for kind, numbers in (("tick own", own), ("tick", _upwards(frame.up, axes, reader))):
-        for value, label in numbers:
-            _, y = frame.at((0.0, value))
-            if _is_free(taken, y, LETTER / 2):
-                strokes.append(path([(box.left - 4, y), (box.left, y)]))
-                text(drawing, kind, (box.left - 7, y + 4.5), label, "end")
-    own = [(corner[0], reader.figure(corner[0], axes.across_unit)) for corner in bold if corner[1] == 0]
+    for value, label, kind in (*own, *((*number, "tick") for number in _upwards(frame.up, axes, reader))):
+        _, y = frame.at((0.0, value))
+        if _is_free(taken, y, LETTER / 2):
+            strokes.append(path([(box.left - 4, y), (box.left, y)]))
+            text(drawing, kind, (box.left - 7, y + 4.5), label, "end")
+    own = [(corner[0], reader.figure(corner[0], axes.across_unit), kind) for corner, kind in bold if corner[1] == 0]
     taken = []
-    for kind, numbers in (("tick own", own), ("tick", _spread(frame, reader))):
-        for value, label in numbers:
-            x, half = frame.at((value, 0.0))[0], width_of(label) / 2
-            if _is_free(taken, x, half + GAP / 2):
-                strokes.append(path([(x, box.bottom), (x, box.bottom + 4)]))
-                text(drawing, kind, (min(x, frame.size[0] - half), box.bottom + 18.5), label, "middle")
+    for value, label, kind in (*own, *((*number, "tick") for number in _spread(frame, reader))):
+        x, half = frame.at((value, 0.0))[0], width_of(label) / 2
+        if _is_free(taken, x, half + GAP / 2):
+            strokes.append(path([(x, box.bottom), (x, box.bottom + 4)]))
+            text(drawing, kind, (min(x, frame.size[0] - half), box.bottom + 18.5), label, "middle")
     add(drawing, "path", "axis", d="".join(strokes))
     text(drawing, "title", (0.0, 11.0), axis_title(axes.up, axes.up_unit, reader))
     text(

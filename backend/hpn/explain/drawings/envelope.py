@@ -42,7 +42,7 @@ def envelope_scene(
         marks.append(_equivalent(picture, reader))
         edge = min(worst.allowed / worst.published, 1e6)
         ray = (worst.radial_N, worst.axial_N), (edge * worst.radial_N, edge * worst.axial_N)
-    return Scene(lines, marks, ray)
+    return Scene(lines, marks, ray, levers=_levers(picture))
 
 
 def sizes_scene(
@@ -56,7 +56,7 @@ def sizes_scene(
             own = use.gear.size == picture.gear.size
             kind = "limit" if own else f"size s{place % 4}"
             lines.append(Line(kind, use.gear.size, corners, own, use.gear.name, use.curve.load_coefficient))
-    return Scene(lines, _marks(picture, governing, reader, judged=False))
+    return Scene(lines, _marks(picture, governing, reader, judged=False), levers=_levers(picture))
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +118,11 @@ def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *,
         label, told = disc_label(load.places) if at in numbered else "", _told_of(load, outside, reader)
         marks.append(Mark(kind, label, place, told, load.published, outside, load.marked))
     return marks
+
+
+def _levers(picture: BearingPicture) -> list[tuple[Point, Point]]:
+    """Lines from the loads where they act to those at the shaft's centre."""
+    return [((load.given_N, load.axial_N), (load.radial_N, load.axial_N)) for load in picture.loads if load.has_lever]
 
 
 def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from hpn.application import OutputLoad
+from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import CheckResult
 from hpn.engine.duty import Duty
-from hpn.engine.envelopes import EnvelopeCurve, envelope_curve, envelopes_for, has_envelope
+from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, envelope_curve, envelopes_for, has_envelope
 from hpn.engine.figures import phase_loads, radial_at_centre
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.words import phase_numbers
@@ -196,26 +197,34 @@ def beyond_limit(utilisation: float, allowed: float) -> bool:
     return utilisation > allowed * (1 + ROUNDING)
 
 
-def bearing_picture(subject: Subject, life: CheckResult | None = None) -> BearingPicture | None:
+def bearing_picture(
+    subject: Subject,
+    life: CheckResult | None = None,
+    condition: EnvelopeQuery | None = None,
+    *,
+    without_lever: bool = False,
+) -> BearingPicture | None:
     """Picture of the bearing of a gear, or None where its size has no envelope or its loads are not rated.
 
-    `life` is the check of the bearing's life, just made or saved: it compares f_w P_m and k.
+    `life` is the check of the bearing's life, just made or saved: it compares f_w P_m and k. Without a load it holds
+    for a `condition`, or for the cycle's speed and the life that counts by default. `without_lever` shows loads whose
+    lever is not known where they act.
     """
     application, catalogue, gear = subject.application, subject.catalogue, subject.gear
     load, allowed = application.loads or OutputLoad(), application.requirements.utilisation
+    speed_rpm = subject.duty.average_output_speed_rpm.item()
+    if application.loads is None and condition is not None:
+        load, speed_rpm = _load_of(condition), condition.speed_rpm
     if not has_envelope(catalogue, gear, load.model):
         return None
     loads: list[PhaseLoad] = []
-    mean, k = 0.0, _life_factor(subject, load)
+    mean, k = 0.0, _life_factor(catalogue, load, speed_rpm)
     if application.loads is not None:
-        if life is None or life.demand is None or life.limit is None:
+        demand = _demand_of(life, without_lever=without_lever)
+        if life is None or demand is None or life.limit is None:
             return None
-        mean, k = life.demand / load.load_coefficient, life.limit
-        published = phase_loads(subject.duty, subject.sizes)[0, subject.place].tolist()
-        radial = radial_at_centre(subject.duty, subject.sizes)[0]
-        own = radial[subject.place if len(radial) > 1 else 0].tolist()
-        names = [phase.name for phase in application.duty_cycle.load_phases]
-        loads = different_loads(subject.duty, own, published, allowed, names)
+        mean, k = demand / load.load_coefficient, life.limit
+        loads = _loads_of(subject, without_lever=without_lever)
     return BearingPicture(
         gear=gear,
         load=load,
@@ -224,23 +233,49 @@ def bearing_picture(subject: Subject, life: CheckResult | None = None) -> Bearin
         hidden=max(len(loads) - MOST_LOADS, 0),
         mean=mean,
         life_factor=k,
-        average_output_speed_rpm=subject.duty.average_output_speed_rpm.item(),
+        average_output_speed_rpm=speed_rpm,
         curves=envelopes_for(catalogue, gear, load.model, load.load_coefficient, allowed * min(1.0, k)),
         published_curve=envelope_curve(catalogue, gear, load.model, load.load_coefficient, allowed),
         mean_curve=envelope_curve(catalogue, gear, load.model, 1.0, mean),
     )
 
 
-def _life_factor(subject: Subject, load: OutputLoad) -> float:
+def _demand_of(life: CheckResult | None, *, without_lever: bool) -> float | None:
+    """Equivalent load f_w P_m of a check of the bearing's life; without its lever the least that it may be."""
+    if life is None or not without_lever:
+        return None if life is None else life.demand
+    return None if life.at_least is None or life.limit is None else life.at_least * life.limit
+
+
+def _loads_of(subject: Subject, *, without_lever: bool) -> list[PhaseLoad]:
+    duty, sizes = subject.duty, subject.sizes
+    radial = duty.phases.radial_N if without_lever else radial_at_centre(duty, sizes)
+    published = phase_loads(duty, sizes, radial)[0, subject.place].tolist()
+    own = radial[0, subject.place if radial.shape[1] > 1 else 0].tolist()
+    names = [phase.name for phase in subject.application.duty_cycle.load_phases]
+    return different_loads(duty, own, published, subject.application.requirements.utilisation, names)
+
+
+def default_condition(subject: Subject) -> EnvelopeQuery:
+    """Condition of what a shaft may carry where no load is given: the speed of the cycle and the life by default."""
+    load = OutputLoad()
+    return EnvelopeQuery(speed_rpm=subject.duty.average_output_speed_rpm.item(), life_h=load.life_h, model=load.model)
+
+
+def _load_of(condition: EnvelopeQuery) -> OutputLoad:
+    return OutputLoad(load_coefficient=condition.load_coefficient, life_h=condition.life_h, model=condition.model)
+
+
+def _life_factor(catalogue: Catalogue, load: OutputLoad, speed_rpm: float) -> float:
     """k of an application: what speed and required life make of the published limits."""
-    speed, life = subject.catalogue.bearing_reference
+    speed, life = catalogue.bearing_reference
     k = bearing.life_factor(
-        average_output_speed_rpm=subject.duty.average_output_speed_rpm,
+        average_output_speed_rpm=speed_rpm,
         required_life_L50_h=bearing.required_L50(life_h=load.life_h, basis=load.life_basis),
         reference_speed_rpm=speed,
         reference_life_h=life,
     )
-    return k.item()
+    return float(k)
 
 
 def different_loads(

@@ -5,6 +5,8 @@ from functools import cached_property
 from xml.etree.ElementTree import Element
 
 from hpn.engine.candidates import Candidate
+from hpn.engine.centres import NeededCentre, needed_centres
+from hpn.engine.envelopes import EnvelopeQuery
 from hpn.explain.drawings.bearing import bearing_figure, sizes_figure
 from hpn.explain.drawings.chart import LARGE, PLANE, SMALL, Scene, chart
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
@@ -43,12 +45,14 @@ def governing_phases(subject: Subject, check: str | None, picture: BearingPictur
 class Pictures:
     """Pictures that page and report set or hand to Plotly; each is made when it is asked for.
 
-    `chosen` is the candidate that is looked at, as it was judged just now or when it was saved.
+    `chosen` is the candidate that is looked at, as it was judged just now or when it was saved. Without a load the
+    bearing is shown under a `condition`.
     """
 
     subject: Subject
     chosen: Candidate
     reader: Reader
+    condition: EnvelopeQuery | None = None
 
     @cached_property
     def cycle(self) -> CyclePicture:
@@ -72,7 +76,19 @@ class Pictures:
     @cached_property
     def bearing(self) -> BearingPicture | None:
         """Permitted and given loads of the output bearing, or None where it is not rated."""
-        return bearing_picture(self.subject, self.chosen.check("output_bearing_life"))
+        return bearing_picture(self.subject, self.chosen.check("output_bearing_life"), self.condition)
+
+    @property
+    def without_lever(self) -> list[Element]:
+        """Drawings of the loads where they act, as long as their lever is not known; none where nothing is rated."""
+        life = self.chosen.check("output_bearing_life")
+        picture = bearing_picture(self.subject, life, without_lever=True) if life and life.demand is None else None
+        return self._drawn(envelope_scene(picture, self.reader)) if picture else []
+
+    @property
+    def needed_centres(self) -> list[NeededCentre]:
+        """Distance of the shaft's centre that each size needs, where the loads act off it."""
+        return needed_centres(self.subject.of_sizes)
 
     @cached_property
     def envelope_scene(self) -> Scene:
@@ -101,20 +117,12 @@ class Pictures:
         return size_uses(self.subject, self.bearing)
 
     @property
-    def sizes_drawing(self) -> list[Element]:
-        """Drawings of all sizes, likewise."""
-        return self._drawn(self._all_sizes)
-
-    @property
     def sizes_figure(self) -> Figure:
         """Plotly figure of all sizes."""
         assert self.bearing is not None
-        return sizes_figure(self._all_sizes, self.sizes, self.bearing, self.reader)
-
-    @cached_property
-    def _all_sizes(self) -> Scene:
-        assert self.bearing is not None
-        return sizes_scene(self.sizes, self.bearing, self.reader, self.governing)
+        return sizes_figure(
+            sizes_scene(self.sizes, self.bearing, self.reader, self.governing), self.sizes, self.bearing, self.reader
+        )
 
     @property
     def carries(self) -> bool:

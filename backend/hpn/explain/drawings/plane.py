@@ -1,7 +1,7 @@
 """Torques at their speeds beside what is permitted, at the gear's output and at the motor; all by magnitude."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isinf
 from xml.etree.ElementTree import Element
 
@@ -10,7 +10,7 @@ import numpy as np
 from hpn.account.readings import figure_symbol
 from hpn.application import Motor
 from hpn.engine.motor_torques import efficiencies
-from hpn.explain.drawings.chart import LARGE, LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
+from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
 from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
@@ -44,16 +44,11 @@ class Demand:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """Drawings for a narrow and for a wide place, and what they show as rows of a table and in words."""
+    """A drawing, and what it shows as rows of a table and in words."""
 
-    drawings: list[Element]
+    drawing: Element
     demands: list[Demand]
     words: list[Sentence]
-
-    @property
-    def drawing(self) -> Element:
-        """That for a narrow place."""
-        return self.drawings[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +81,7 @@ class _Limits:
 
 @dataclass(frozen=True, eq=False)
 class _Cycle:
-    """Points of a cycle: means and peaks of its phases, shape (phases,), and the curve of a motion."""
+    """Points of a cycle: means and peaks of its phases, shape (phases,), and the curve of a motion and its moves."""
 
     speed_rpm: FloatArray
     torque_Nm: FloatArray
@@ -94,6 +89,11 @@ class _Cycle:
     peak_torque_Nm: FloatArray
     curves: dict[int, list[Point]]
     names: Sequence[str | None]
+    moves: Sequence[int] | None = None
+
+    def rows(self, places: Sequence[int]) -> list[int]:
+        """Places of the rows that some phases come from: of a motion those of its moves."""
+        return list(places) if self.moves is None else sorted({self.moves[place] for place in places})
 
 
 def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Plane:
@@ -129,7 +129,7 @@ def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[i
         trace = trace_of(course)
         curves = _curves(trace, np.abs(trace.speed_rpm), np.abs(trace.torque_Nm))
     n, T, fastest, largest = phases.speed_rpm, phases.torque_Nm, phases.peak_speed_rpm, phases.peak_torque_Nm
-    cycle = _Cycle(n[0, 0], T[0, 0], fastest[0, 0], largest[0, 0], curves, _names(subject))
+    cycle = _Cycle(n[0, 0], T[0, 0], fastest[0, 0], largest[0, 0], curves, _names(subject), _moves(subject))
     words = [
         _compared(N_("Largest torque {torque}, largest speed {speed}."), limits[0], subject),
         _compared(N_("Average torque {torque}, average speed {speed}."), limits[1], subject),
@@ -171,12 +171,22 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
         _compared(N_("RMS torque {torque}, average speed {speed}."), limits[1], subject),
     ]
     scene = _scene(_at_motor(subject, motor), limits, "T_rms", MOTOR, subject, reader, governing)
+    scene = replace(scene, lines=[*scene.lines, *_drive_limit(subject, scene, reader)])
     return _plane(scene, limits, words, subject, reader)
 
 
 def _plane(scene: Scene, limits: Sequence[_Limits], words: list[Sentence], subject: Subject, reader: Reader) -> Plane:
     demands = [demand for one in limits for demand in one.demands(subject.application.requirements.utilisation)]
-    return Plane([chart(scene, reader, size) for size in (PLANE, LARGE)], demands, words)
+    return Plane(chart(scene, reader, PLANE), demands, words)
+
+
+def _drive_limit(subject: Subject, scene: Scene, reader: Reader) -> Iterable[Line]:
+    """Torque limit to set in the drive, right across, where it is not far beyond the rest."""
+    limit = subject.of_gear.motor_torque_limit_Nm.item()
+    most = max((T for line in scene.lines for _, T in line.corners if not isinf(T)), default=0.0)
+    most = max(most, *(mark.place[1] for mark in scene.marks))
+    if limit <= OUT_OF_SCALE * most:
+        yield Line("drive", reader.text(N_("drive limit")), [(0.0, limit), (inf, limit)])
 
 
 def _of_motor(motor: Motor, name: str) -> _Limit:
@@ -201,7 +211,14 @@ def _at_motor(subject: Subject, motor: Motor) -> _Cycle:
         torque = np.abs(trace.torque_Nm) / (i * at_peak[trace.phase])[:, None] + moving[trace.phase][:, None]
         curves = _curves(trace, np.abs(trace.speed_rpm) * i, torque)
     means = phases.rms_torque_Nm[0, 0] / (i * at_rms) + moving
-    return _Cycle(phases.speed_rpm[0, 0] * i, means, phases.peak_speed_rpm[0, 0] * i, peaks, curves, _names(subject))
+    speeds = phases.speed_rpm[0, 0] * i, phases.peak_speed_rpm[0, 0] * i
+    return _Cycle(speeds[0], means, speeds[1], peaks, curves, _names(subject), _moves(subject))
+
+
+def _moves(subject: Subject) -> Sequence[int] | None:
+    """Move of each phase of a motion."""
+    motion = subject.application.duty_cycle.motion
+    return motion.course.move.tolist() if motion else None
 
 
 def _names(subject: Subject) -> Sequence[str | None]:
@@ -297,7 +314,7 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
         places = sorted(unsorted)
         most = max(places, key=lambda k: used[k])
         kind = "load governing" if set(governing) & set(places) else "load"
-        label = disc_label(places) if order < MOST_NUMBERS else ""
+        label = disc_label(cycle.rows(places)) if order < MOST_NUMBERS else ""
         told = reader.told(_told(cycle, most, places)) if label else ""
         marks.append(Mark(kind, label, place, told, used.item(most), beyond_limit(used.item(most), u), places[:100]))
     if not cycle.curves:
@@ -307,12 +324,14 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
 
 
 def _told(cycle: _Cycle, k: int, places: Sequence[int]) -> Sentence:
+    rows, (k_row,) = cycle.rows(places), cycle.rows([k])
     values: dict[str, Value] = {
-        "phases": phase_numbers(places) if len(places) > 1 else numbered(k, cycle.names[k]),
+        "phases": phase_numbers(rows) if len(rows) > 1 else numbered(k_row, cycle.names[k]),
         "torque": Quantity(cycle.peak_torque_Nm.item(k), "Nm"),
         "speed": Quantity(cycle.peak_speed_rpm.item(k), "rpm"),
     }
-    return Sentence(N_("Phase {phases}: up to {torque} and {speed}"), values)
+    text = N_("Phase {phases}: up to {torque} and {speed}")
+    return Sentence(text if cycle.moves is None else N_("Move {phases}: up to {torque} and {speed}"), values)
 
 
 # --- In words ---------------------------------------------------------------------------------------------------------

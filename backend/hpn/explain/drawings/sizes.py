@@ -3,8 +3,11 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from hpn.catalogue.gear import Gear
 from hpn.engine.envelopes import EnvelopeCurve, envelope_curve, has_envelope
+from hpn.engine.figures import radial_at_centre, shaft_centre_mm
 from hpn.explain.drawings.picture import BearingPicture, beyond_limit
 from hpn.explain.drawings.subject import Subject
 
@@ -13,14 +16,18 @@ from hpn.explain.drawings.subject import Subject
 class SizeUse:
     """One size: what a constant load may be on it, and how far the loads use it, each None where it is not rated.
 
-    `allowed` is the user's u. Without loads nothing is used.
+    `allowed` is the user's u. Without loads nothing is used. `single` is what a single load may be, `radial_N` the
+    largest radial load at the shaft's centre, and `centre_mm` the distance x_c that counts for it.
     """
 
     gear: Gear
     curve: EnvelopeCurve | None
+    single: EnvelopeCurve | None
     constant_load: float | None
     published: float | None
     allowed: float
+    radial_N: float | None = None
+    centre_mm: float | None = None
 
     @property
     def carries(self) -> bool | None:
@@ -34,14 +41,20 @@ def size_uses(subject: Subject, picture: BearingPicture) -> list[SizeUse]:
     """Use of the bearing of every size of the catalogue, under the conditions of a picture."""
     figures, load, u = subject.of_sizes, picture.load, picture.allowed
     most = min(1.0, picture.life_factor)
+    shape = len(subject.sizes.rows), subject.duty.phases.radial_N.shape[-1]
+    radial = np.broadcast_to(radial_at_centre(subject.duty, subject.sizes)[0], shape).max(axis=-1).tolist()
+    centres = shaft_centre_mm(subject.duty, subject.sizes)[0].tolist()
+    mean, largest = figures.bearing_mean_load, figures.bearing_load
     uses = []
     for place, gear in enumerate(subject.sizes.rows):
-        curve = None
+        curve = single = None
         if has_envelope(subject.catalogue, gear, load.model):
             curve = envelope_curve(subject.catalogue, gear, load.model, load.load_coefficient, u * most)
-        mean, largest = figures.bearing_mean_load, figures.bearing_load
+            single = envelope_curve(subject.catalogue, gear, load.model, load.load_coefficient, u)
         if not picture.loads or math.isnan(mean.item(0, place)):
-            uses.append(SizeUse(gear, curve, None, None, u))
+            uses.append(SizeUse(gear, curve, single, None, None, u))
         else:
-            uses.append(SizeUse(gear, curve, mean.item(0, place) / most, largest.item(0, place), u))
+            used = mean.item(0, place) / most, largest.item(0, place)
+            centre = None if math.isnan(centres[place]) else centres[place]
+            uses.append(SizeUse(gear, curve, single, *used, u, radial[place], centre))
     return uses

@@ -30,10 +30,12 @@ def _press(given: Given, do: str, what: str, application_of: Reads) -> str | Non
     """Play one button, which may say what or which row it is for; the element to go on from."""
     focus: str | None = do
     match do:
-        case "one_way" | "from_motion":
+        case _ if do in _SETS:
             name, text = _SETS[do]
             given.put(name, text)
             focus = f"f-{name}"
+        case "give":
+            focus = what
         case "inertia" | "gravity":
             helpers.hand_over(given, gravity=do == "gravity")
         case "way":
@@ -53,5 +55,11 @@ def _press(given: Given, do: str, what: str, application_of: Reads) -> str | Non
     return focus
 
 
-_SETS = {"one_way": (REVERSES, "0"), "from_motion": ("fm", "1")}
+_SETS = {
+    "one_way": (REVERSES, "0"),
+    "from_motion": ("fm", "1"),
+    "iso281": ("bm", "iso281"),
+    "linear": ("bm", ""),
+    "by_L10": ("Lbb", "L10"),
+}
 """Buttons that give a single value."""

@@ -11,7 +11,8 @@ from pydantic import ValidationError
 
 from hpn.engine.envelopes import EnvelopeQuery
 from hpn.tables import numbers
-from hpn.web.form.linked import CONDITION, WRITTEN_AT
+from hpn.web.form.given import CONDITION
+from hpn.web.form.linked import WRITTEN_AT
 from hpn.web.form.refusals import refusal_of
 from hpn.words.quantities import DUTY, INPUTS
 from hpn.words.reader import Reader
@@ -48,6 +49,12 @@ class Condition:
     fields: tuple[ConditionField, ...]
     query: EnvelopeQuery
     written: str
+
+    @property
+    def tail(self) -> str:
+        """What was typed as the end of an address, in the units of links."""
+        typed = [field.name for field in self.fields if field.text.strip() and not field.problem]
+        return "".join(f"&{name}={getattr(self.query, FIELDS[name]):.12g}" for name in typed)
 
 
 def condition_of(pairs: Sequence[tuple[str, str]], reader: Reader, default: EnvelopeQuery) -> Condition:

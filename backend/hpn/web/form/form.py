@@ -62,6 +62,7 @@ class Form:
     application: Application | None = None
     written: str | None = None
     was: str = ""
+    condition: Mapping[str, str] = field(default_factory=dict)
     typed: str | None = None
     labels: Mapping[str, str] = field(default_factory=lambda: dict.fromkeys(LABELS, ""))
 

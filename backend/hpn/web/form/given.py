@@ -53,7 +53,10 @@ def is_of_one_way(name: str, text: str) -> bool:
 _OF_MOTION = {symbol.name for symbol in (*TURN_SYMBOLS, *MECHANISM_SYMBOLS)}.difference(OF_ANY_ROW)
 _OF_PEOPLE = {*LABELS, NAME.role}
 
-PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, WRITTEN, WAS)
+CONDITION = ("at_n", "at_life", "at_fw")
+"""Speed, life and load coefficient of which a page says what a shaft may carry, where no load is given."""
+
+PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, WRITTEN, WAS, *CONDITION)
 """Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, the
 buttons that edit the rows, one after the other, and what was typed another way (repeated)."""
 
@@ -270,7 +273,7 @@ class Given:
         page = [*self.page.items(), *(("pin", pin) for pin in self.pins), *((ASIDE, aside) for aside in self.asides)]
         page += [(TOLERANCE, text) for text in self.tolerances]
         pairs = (*named, *page, *self.unknown)
-        return [(name, text) for name, text in pairs if text.strip() and name not in (WRITTEN, WAS)]
+        return [(name, text) for name, text in pairs if text.strip() and name not in (WRITTEN, WAS, *CONDITION)]
 
     def problems(self) -> Iterable[FieldProblem]:
         """Names that are unknown, repeated, or repeated unequally often."""

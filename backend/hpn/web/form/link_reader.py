@@ -18,9 +18,10 @@ from hpn.tables.by_size import BySize, by_size
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
 from hpn.web.form import tolerances
+from hpn.web.form.beside import with_beside
 from hpn.web.form.buttons import play
 from hpn.web.form.form import Form
-from hpn.web.form.given import REQUIRED, FieldProblem, Given, Pairs
+from hpn.web.form.given import CONDITION, REQUIRED, FieldProblem, Given, Pairs
 from hpn.web.form.helpers import BodyTable, body_table
 from hpn.web.form.labels import LABELS
 from hpn.web.form.refusals import refusal_of
@@ -71,7 +72,7 @@ _TABLES = (
 
 def parse(pairs: Pairs) -> Form:
     """Form of a query, with everything that the query says and a message for each wrong field."""
-    given = Given(pairs)
+    given = Given(with_beside(pairs))
     focus = play(given, lambda sorted_pairs: _read(sorted_pairs)[0])
     application, problems = _read(given)
     decimal = given.notation.reader.decimal
@@ -92,6 +93,7 @@ def parse(pairs: Pairs) -> Form:
         application=application,
         written=given.notation.marker,
         typed=given.typed,
+        condition={name: given.page[name] for name in CONDITION if given.page.get(name, "").strip()},
         labels={name: given.labels.get(name, [""])[0] for name in LABELS},
     )
 

@@ -13,7 +13,7 @@ from hpn.web.door.uploads import read_fields
 from hpn.web.door.visit import address
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
-from hpn.web.form.given import Pairs
+from hpn.web.form.given import CONDITION, Pairs
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +63,6 @@ def _unreadable(form: Form) -> Problem:
 
 
 # --- From page to page ------------------------------------------------------------------------------------------------
-
-CONDITION = ("at_n", "at_life", "at_fw")
-"""Speed, life and load coefficient that the envelope on a gear’s page is asked for."""
 
 WRITTEN_AT = "at_written"
 """Marker of the language and units that they are typed in."""

@@ -3,6 +3,7 @@
 import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 from zlib import crc32
 
@@ -17,17 +18,19 @@ from hpn.catalogue.ordering import OrderingCode, ordering_code
 from hpn.engine.candidates import REASONS, Candidate
 from hpn.engine.selection import Selection, judge
 from hpn.engine.tried import tried
+from hpn.explain.drawings import Pictures, default_condition
 from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.pools import compute, worked
 from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
+from hpn.web.form.condition import Condition, condition_of
 from hpn.web.form.form import Form, address_of_empty, for_reader
 from hpn.web.form.given import CYCLE_NAMES, FieldProblem
 from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
-from hpn.web.form.linked import LONGEST_LINK
+from hpn.web.form.linked import LONGEST_LINK, WRITTEN_AT
 from hpn.web.form.offers import beside_fields
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
@@ -84,7 +87,22 @@ class Answer(Result):
     map: tuple[tuple[int, tuple[MapCell | None, ...]], ...]
     insight: Insight
     own_cycle: str
+    form: Form
     live: bool = True
+
+    @cached_property
+    def condition(self) -> Condition:
+        """Condition of what the shaft may carry as it was typed beside the answer, where no load is given."""
+        assert self.pictures is not None
+        typed = [(WRITTEN_AT, self.form.written or ""), *self.form.condition.items()]
+        return condition_of(typed, current(), default_condition(self.pictures.subject))
+
+    @cached_property
+    def bearing_pictures(self) -> Pictures | None:
+        """Those of the section on the output bearing: without a load under the condition that was typed."""
+        if self.pictures is None or self.application.loads is not None:
+            return self.pictures
+        return replace(self.pictures, condition=self.condition.query)
 
     @property
     def mark(self) -> str:
@@ -134,7 +152,10 @@ def respond(request: Request, form: Form, *, first: bool = False) -> Response:
     # The page holds nothing that its address has not.
     alone = not (form.focus or form.asides or form.bodies.given)
     if answer and WRITTEN in request.query_params and not changes and alone:
-        return RedirectResponse(answer.address, 303)  # what was written in a reader's units gets an address for all
+        own = answer.condition.tail if form.condition else ""
+        return RedirectResponse(
+            f"{answer.address}{own}", 303
+        )  # what was written in a reader's units gets an address for all
     parts = _parts(request, form)
     if answer and "result" in parts:
         request.app.state.metrics.selections(["none" if answer.selection.selected is None else "selected"])
@@ -191,6 +212,7 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
         tail=tail,
         address=link + chosen + tail,
         order=order,
+        form=form,
         map=_map(selection, everything, catalogue),
         insight=Insight(application, selection, everything, everything[gear.designation], form.pins, catalogue),
     )

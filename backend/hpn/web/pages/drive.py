@@ -8,10 +8,12 @@ from hpn.application import Application, Motor
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
+from hpn.engine.duty import Duty
 from hpn.engine.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motors_on, ratios_with_motor, with_motor
 from hpn.engine.notices import on_motor_torques
 from hpn.engine.selection import Selection
 from hpn.explain.calculation.motor import BY_CURVE, LOSS_FREE, STATED
+from hpn.physics import stiffness
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK
 from hpn.words.wording import N_, Sentence
@@ -70,6 +72,43 @@ class Drive:
         """Link of the application with a motor of the list, blank for one that is too long to stand for each motor."""
         link = to_link(with_motor(self.application, use.motor))
         return link if len(link) <= LONGEST_LINK else ""
+
+    @property
+    def speed_limit_rpm(self) -> float | None:
+        """Speed to set in the drive: the smaller of what gear and motor may run at, as far as they are known."""
+        of_motor = self.motor.maximum_speed_rpm if self.motor else None
+        return min((n for n in (self.gear.maximum_input_speed_rpm, of_motor) if n is not None), default=None)
+
+    @property
+    def error_parts(self) -> list[tuple[str, float]]:
+        """Parts that add up to the position error in arcmin by their names; none where one is not published."""
+        gear, (lowest, highest) = self.gear, (torque.item() for torque in self._duty.torque_range_Nm)
+        accuracy, backlash, K3 = (
+            gear.transmission_accuracy_arcmin,
+            gear.backlash_arcmin,
+            gear.torsional_stiffness_Nm_per_rad,
+        )
+        if accuracy is None or backlash is None or K3 is None:
+            return []
+        wind_up = stiffness.wind_up(torque_Nm=highest - lowest, torsional_stiffness_Nm_per_rad=K3).item()
+        crossed = backlash if lowest <= 0 <= highest else 0.0
+        parts = ((N_("accuracy"), accuracy), (N_("backlash"), crossed), (N_("wind-up"), wind_up))
+        return [(name, value) for name, value in parts if value > 0]
+
+    @property
+    def shortest_ramp_s(self) -> float | None:
+        """Shortest ramp of a motion; None where phases are typed."""
+        motion = self.application.duty_cycle.motion
+        return min((move.shortest_ramp_s for move in motion.moves if move.way), default=None) if motion else None
+
+    @property
+    def stop_speed_rpm(self) -> float:
+        """Output speed at the command of an emergency stop."""
+        return float(self._duty.stop_speed_rpm.item())
+
+    @cached_property
+    def _duty(self) -> Duty:
+        return Duty.of([self.application])
 
     @property
     def sizes(self) -> list[SizeWithMotor]:

@@ -38,6 +38,13 @@ class Insight:
         lasting = load.model_copy(update={"life_h": self.application.requirements.life_h, "life_basis": "L10"})
         return to_link(self.application.model_copy(update={"output_load": lasting}))
 
+    @property
+    def at_centre(self) -> str:
+        """Link of the application with its loads at the shaft's centre and along its axis."""
+        load = self.application.loads or OutputLoad()
+        placed = load.model_copy(update={"radial_position_mm": None, "axial_radius_mm": 0.0})
+        return to_link(self.application.model_copy(update={"output_load": placed}))
+
     @cached_property
     def columns(self) -> tuple[Account, ...]:
         """The gears side by side: the chosen one, and the others that are pinned or else the one that comes next."""

@@ -112,6 +112,21 @@ class Result:
         subject = Subject(self.application, self.gear, self.catalogue, self.chosen)
         return Pictures(subject, self.chosen, current())
 
+    @property
+    def bearing_pictures(self) -> Pictures | None:
+        """Those of the section on the output bearing."""
+        return self.pictures
+
+    @property
+    def at_least(self) -> tuple[str, float] | None:
+        """Check and utilisation of the chosen candidate as far as it is known, where its bearing lacks an input."""
+        known = [
+            (check.code, used)
+            for check in self.chosen.checks
+            if (used := check.at_least if check.utilisation is None else check.utilisation) is not None
+        ]
+        return max(known, key=lambda one: one[1] / self.bounds[one[0]]) if self.chosen.missing and known else None
+
     @cached_property
     def drive(self) -> Drive | None:
         """Motor of the chosen candidate, or None where what it needs is not kept."""

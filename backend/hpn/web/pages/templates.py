@@ -32,6 +32,7 @@ from hpn.web.form.form import ROWS_IN_TABLE
 from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.form.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
 from hpn.web.pages import assets
+from hpn.web.pages.notes import head_and_reason, note_groups
 from hpn.web.pages.result import preview_of
 from hpn.words import units
 from hpn.words.quantities import GEAR, LISTED, QUANTITIES
@@ -237,7 +238,13 @@ def _stiffness(_: Context, candidate: Candidate) -> str:
 
 def _inline(drawing: Element | list[Element]) -> Markup:
     """A drawing, or one for each kind of place, as part of a page; an XML library made it, which escapes its texts."""
-    return Markup("".join(map(markup, drawing if isinstance(drawing, list) else [drawing])))
+    text = "".join(map(markup, drawing if isinstance(drawing, list) else [drawing]))
+    text = text.replace(' xmlns="http://www.w3.org/2000/svg"', "")  # what stands in HTML needs none
+    return Markup(_FINER.sub(r"\1", text))
+
+
+_FINER = re.compile(r"(?<=\d)(\.\d)\d{1,2}(?=[ LZHV\"])")
+"""Less than a tenth of a unit in coordinates, which no screen shows."""
 
 
 def _as_attribute(figure: Figure) -> Markup:
@@ -258,6 +265,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "figure": _figure,
     "followed": _followed,
     "formula": as_formula,
+    "headed": head_and_reason,
     "inline": _inline,
     "parted": parted,
     "reason": _reason,
@@ -307,6 +315,7 @@ GLOBALS: dict[str, Any] = {
     "motor_pattern": MOTOR_CODE,
     "carried_pairs": carried_pairs,
     "NOT_USED": NOT_USED,
+    "note_groups": note_groups,
     "onward": onward,
     "ordering_code": ordering_code,
     "preview_of": preview_of,

@@ -1,0 +1,26 @@
+"""Inputs that are typed beside a note or a figure that lacks them, in place of their field of the form.
+
+`give-Nk` stands for the field `Nk`, and `give-xc-20A` for the number of one size in `xc`. They belong to the form
+element, so that one submission has them; their names are no others' of a link.
+"""
+
+from hpn.web.form.given import Pairs
+from hpn.web.form.symbols import BY_NAME, BY_SIZE
+
+PREFIX = "give-"
+
+
+def with_beside(pairs: Pairs) -> Pairs:
+    """Pairs with what was typed beside a note in the fields that it is for, and on from the last of these."""
+    typed = [(name.removeprefix(PREFIX), text) for name, text in pairs if name.startswith(PREFIX)]
+    if not typed:
+        return pairs
+    kept, focus = [(name, text) for name, text in pairs if not name.startswith(PREFIX)], ""
+    for place, text in typed:
+        name, _, size = place.partition("-")
+        if name in BY_NAME and text.strip():
+            is_part = bool(size) and name in BY_SIZE
+            kept = [(other, said) for other, said in kept if other != name or (is_part and said.strip())]
+            kept.append((name, f"{size[:20]}: {text}" if is_part else text))
+            focus = f"f-{name}"
+    return [*kept, ("do", f"give:{focus}")] if focus else kept
