@@ -43,9 +43,9 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 @pytest.fixture(scope="module")
-def saved(client: TestClient, request: pytest.FixtureRequest) -> list[tuple[str, Json]]:
+def saved(client: TestClient, soak: bool) -> list[tuple[str, Json]]:
     """Ids of saved selections and their replies: some in the short form, 100 in the long one."""
-    chance, count = random.Random(SEED), 100 if request.config.getoption("--soak") else 20
+    chance, count = random.Random(SEED), 100 if soak else 20
     replies = []
     for application in (*EXAMPLES, *(at_random(chance) for _ in range(count - len(EXAMPLES)))):
         response = client.post("/api/v1/selections", json={"application": application})
@@ -58,11 +58,7 @@ def saved(client: TestClient, request: pytest.FixtureRequest) -> list[tuple[str,
 
 def chosen(kept: Json) -> Json:
     """The gear that pages and files show first, as the reply has it."""
-    result = kept["result"]
-    judged = (
-        one for one in result["candidates"] if one["missing"] or all(c["status"] != "not_rated" for c in one["checks"])
-    )
-    return candidate(result, result["selected"] or next(judged, result["candidates"][0])["designation"])
+    return candidate(kept["result"], kept["designation"])
 
 
 def figures(kept: Json) -> Iterator[tuple[str, Named, float]]:
