@@ -10,6 +10,7 @@ import hashlib
 import json
 import re
 import shutil
+import subprocess
 from pathlib import Path
 
 import brotli
@@ -18,6 +19,7 @@ import fonts
 FRONTEND = Path(__file__).parent
 STATIC = FRONTEND / "static"
 DIST = FRONTEND / "dist"
+ESBUILD = FRONTEND / "node_modules/.bin/esbuild"
 HTMX = FRONTEND / "node_modules/htmx.org/dist/htmx.min.js"
 SWAGGER = FRONTEND / "node_modules/swagger-ui-dist"
 TYPEFACE = FRONTEND / "node_modules/@ibm/plex-sans-variable"
@@ -48,7 +50,7 @@ STYLES = {
 
 OF_FORM = ("form", "replacing", "undo", "messages", "requests", "rows", "answer")
 SCRIPTS = (*OF_FORM, "sections", "connection", "insight", "plots", "tools")
-"""Scripts of the form's page, each after those that it imports from."""
+"""Modules of the form's page."""
 
 ALONE = ("docs.js", "favicon.svg", "fleet-report.js", "plots.js")
 """Files that a page asks for by themselves; a fleet’s report holds its script."""
@@ -59,45 +61,28 @@ NOTO = FRONTEND / "node_modules/@expo-google-fonts"
 TEXT_SUFFIXES = {".css", ".html", ".js", ".json", ".map", ".mjs", ".svg", ".txt", ".webmanifest", ".xml"}
 
 
-COMMENTS = {
-    ".css": re.compile(rb"/\*.*?\*/\s*", re.DOTALL),
-    ".js": re.compile(rb"^ *//.*\n| // .*|^\s+", re.MULTILINE),
-}
-"""Comments of our own files by suffix, in scripts also how lines are indented; no text of theirs has ` // ` in it."""
-
-
-IMPORT = re.compile(rb"^import .*\n", re.MULTILINE)
-BLANKS = re.compile(rb"(?<=[;{,(\[])\n+| ?(=>|===|!==|&&|\|\||\?\?) ?| (\+?=|<|>) |(?<=\)) (?=\{)")
-"""Ends of lines, and blanks around operators, that say nothing: no text of ours goes over lines or has operators."""
-
-EXPORT = re.compile(rb"^export ", re.MULTILINE)
-
-
-def sent(name: str) -> bytes:
-    """Content of one of our own files without what only its authors read."""
-    path = STATIC / name
-    content = path.read_bytes()
-    return COMMENTS[path.suffix].sub(b"", content) if path.suffix in COMMENTS else content
-
-
-def module(name: str) -> bytes:
-    """One of our scripts: its names are its own but where it exports some, for those after it."""
-    content = sent(f"{name}.js")
-    own = EXPORT.sub(b"", IMPORT.sub(b"", content))
-    return own if EXPORT.search(content) else b"{\n" + own + b"}\n"
+def minified(source: bytes, loader: str, *options: str) -> bytes:
+    """Script or style sheet of ours without what only its authors read, by esbuild."""
+    command = [str(ESBUILD), f"--loader={loader}", "--minify", "--legal-comments=none", "--log-level=warning", *options]
+    return subprocess.run(command, input=source, cwd=STATIC, check=True, capture_output=True).stdout.strip()
 
 
 def script(*names: str) -> bytes:
-    """htmx, and scripts of ours after it: one file, in which each has the exported names of those before it."""
-    parts = BLANKS.sub(rb"\1\2", b"".join(module(name) for name in names))
-    return HTMX.read_bytes() + b'\n(() => {"use strict";' + parts + b"})();\n"
+    """htmx, and modules of ours after it in one file."""
+    entry = "".join(f'import "./{name}.js";' for name in names).encode()
+    return HTMX.read_bytes() + b"\n" + minified(entry, "js", "--bundle", "--format=iife") + b"\n"
 
 
 def style(faces: dict[str, bytes], *names: str) -> bytes:
-    """Style sheets of ours as one on one line, which ask for the faces by their hashed names."""
-    text = " ".join(b"".join(sent(f"{name}.css") for name in names).decode().split())
-    text = re.sub(r" ?([{};]) ?|([:,]) ", r"\1\2", text).replace(";}", "}")
+    """Style sheets of ours as one, which ask for the faces by their hashed names."""
+    text = minified(b"".join((STATIC / f"{name}.css").read_bytes() for name in names), "css").decode()
     return re.sub(r"url\((hpn-[\w.-]+)\)", lambda url: f"url({hashed_name(url[1], faces[url[1]])})", text).encode()
+
+
+def alone(name: str) -> bytes:
+    """Content of a file that is asked for by itself."""
+    content = (STATIC / name).read_bytes()
+    return minified(content, "js") if name.endswith(".js") else content
 
 
 def files() -> dict[str, bytes]:
@@ -111,7 +96,7 @@ def files() -> dict[str, bytes]:
         "page.js": script(*SCRIPTS),
         "gear.js": script("form", "tools"),
         **{name: style(faces, *parts) for name, parts in STYLES.items()},
-        **{name: sent(name) for name in ALONE},
+        **{name: alone(name) for name in ALONE},
     }
 
 
