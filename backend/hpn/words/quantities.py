@@ -74,7 +74,7 @@ INPUTS: Mapping[str, Named] = {
     "output_load.drive.diameter_mm": Named(N_("Pitch diameter"), "d"),
     "requirements.life_h": Named(N_("Required gear life"), "L_10,req"),
     "requirements.utilisation": Named(N_("Maximum utilisation"), "u"),
-    "requirements.worst_case_utilisation": Named(N_("Maximum utilisation in the worst case"), "u_w"),
+    "requirements.worst_case_utilisation": Named(N_("Utilisation permitted in the worst case"), "u_w"),
     "requirements.over_tolerance": Named(N_("Gears judged")),
     "requirements.efficiency": Named(N_("Assumed efficiency"), "η"),
     "requirements.motor.maximum_speed_rpm": Named(N_("Maximum motor speed"), "n_mot"),
