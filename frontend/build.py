@@ -30,7 +30,7 @@ DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
 RESULT = ("insight", "tabs", *DRAWN)
 STYLES = {
-    "page.css": (*COMMON, "workbench", *RESULT, "motion", "verdict", "sheet", "phone", "print"),
+    "page.css": (*COMMON, "workbench", *RESULT, "verdict", "sheet", "phone", "print"),
     "site.css": (
         *COMMON,
         "catalogue",
@@ -44,9 +44,11 @@ STYLES = {
         "print",
         "paper",
     ),
+    **{f"{part}.css": (part,) for part in ("motion", "reading")},
     "report.css": ("tokens", "app", "tools", "fleet", "phone", "print"),
 }
-"""Style sheets of the form with its result, of all other pages, and of a fleet’s report, which holds its own."""
+"""Style sheets of the form with its result, of all other pages, of parts that come later and bring their own, and of a
+fleet’s report, which holds its own."""
 
 OF_FORM = ("form", "replacing", "undo", "messages", "requests", "rows", "answer")
 SCRIPTS = (*OF_FORM, "sections", "connection", "insight", "plots", "tools")

@@ -67,7 +67,11 @@ document.addEventListener("htmx:config:request", (event) => {
 
 const watcher = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => isIntersecting && bring(target)), { rootMargin: `0px 0px ${AHEAD}px` });
 
+// Heads of tables stick below the title block, which is as high as what it says.
+const measurer = new ResizeObserver(([{ target }]) => document.body.style.setProperty("--head", `${target.offsetHeight}px`));
+
 function watch() {
+  for (const head of document.querySelectorAll(".head")) measurer.observe(head);
   for (const part of document.querySelectorAll("[data-part]")) {
     watcher.observe(part); // once more does no harm
     bring(part);

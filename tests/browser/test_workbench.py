@@ -354,13 +354,3 @@ def test_sign_and_unit_of_the_checks_stand_in_columns_and_each_name_in_one_line(
         assert len(set(limits.locator(part).evaluate_all(EDGES))) == 1, part
     expect(page.locator("#limits tbody td:nth-child(2) .unit")).to_have_count(0)
     assert max(names) <= 24, names
-
-
-def test_headings_of_a_comparison_stand_on_one_line_and_pins_have_no_ground_of_their_own(visitor: Visitor) -> None:
-    page = visitor.open(EXAMPLE + "&gear=HPN-20A-5&pin=HPN-32A-5#compare")
-    headings = page.locator("#comparison thead th")
-    expect(headings).to_have_count(2)
-    grounds = headings.locator(".pin").evaluate_all("pins => pins.map(pin => getComputedStyle(pin).backgroundColor)")
-
-    assert len(set(headings.evaluate_all(FEET))) == 1
-    assert set(grounds) == {"rgba(0, 0, 0, 0)"}

@@ -12,7 +12,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.explain.calculation import Line, Step
 from hpn.explain.calculation.formula import value_of
-from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
+from hpn.explain.calculation.mathml import addition, compared, in_symbols, result, substituted
 from hpn.words.reader import Reader
 from tests.build import Json, candidate, cycle, phase, worked_example
 from tests.property.draw import applications
@@ -164,6 +164,25 @@ def test_substituted_numbers_give_the_result_that_is_printed_in_every_language_a
                     found, printed = shown(line, reader)
                     scale = max(abs(printed), 1e-9)
                     assert abs(found - printed) <= NINE_DIGITS * scale, (step.code, reader, found, printed)
+
+
+@given(applications())
+@example(LOADED)
+@example(PER_PHASE)
+def test_the_rows_of_a_sum_add_up_to_the_sum_that_its_equation_takes(application: Json) -> None:
+    """Added up from the printed rows; the sum itself is worked out from all phases with every digit."""
+    _, steps = steps_of(application, "HPN-20A-5")
+    for reader in READERS:
+        for step, sums in ((step, addition(reader, step)) for step in steps):
+            if sums is None or sums.left_out:
+                continue
+            columns = zip(*(values for _, values in sums.rows), strict=True)
+            for column, printed in zip(columns, sums.totals, strict=True):
+                if printed:
+                    found, given_sum = math.fsum(number(value, reader) for value in column), number(printed, reader)
+                    assert math.isclose(found, given_sum, rel_tol=1e-8), (step.code, reader)  # nine digits each
+                    equations = " ".join(substituted(reader, line) for line in step.lines)
+                    assert f"<mn>{printed}</mn>" in equations
 
 
 @given(applications())

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from hpn.account.account import Account
+from hpn.account.published import ranged
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
@@ -46,32 +47,53 @@ def test_wind_up_is_that_of_the_drive_and_the_report(catalogue: Catalogue) -> No
     assert larger == pytest.approx(40 / 143000 * 180 / math.pi * 60, rel=1e-12)
 
 
-def test_the_best_gear_of_each_row_is_the_one_with_the_smaller_or_the_larger_figure(catalogue: Catalogue) -> None:
+def test_a_gear_is_better_than_the_reference_where_its_figure_is_the_smaller_or_the_larger_one(
+    catalogue: Catalogue,
+) -> None:
     """HPN-14A-5 is smaller and has one stage, HPN-32A-50 is larger and has two: size or stage makes one better."""
     loaded = worked_example(output_load={"radial_N": 100.0}, requirements={"load_inertia_kgm2": 0.2, "efficiency": 0.9})
-    best = {code: row.best for code, row in compared(loaded, catalogue, "HPN-14A-5", "HPN-32A-50").items() if row.best}
-    lighter = {"backlash_arcmin", "transmission_accuracy_arcmin", "weight_kg", "length_min_mm", "length_max_mm"}
-    assert {code for code in best if best[code] == {0}} == {f"gear.{name}" for name in lighter}
+
+    def better(reference: str, other: str) -> set[str]:
+        rows = compared(loaded, catalogue, reference, other)
+        return {code for code, row in rows.items() if row.standings == ("reference", "better")}
+
+    lighter = {"backlash_arcmin", "transmission_accuracy_arcmin", "weight_kg", "length"}
     figures = {
         *("life_L10_h", "momentary_peak_count", "bearing_life_L50_h", "bearing_life_L10_h", "shortest_life_h"),
         *("motor_peak_torque_Nm", "motor_rated_torque_Nm"),
         *("wind_up_arcmin", "natural_frequency_Hz", "position_error_arcmin"),
     }
     rated = {"rated_torque_Nm", "repeated_peak_torque_Nm", "momentary_peak_torque_Nm", "torsional_stiffness_Nm_per_rad"}
-    assert {code for code in best if best[code] == {1}} == {
+    assert better("HPN-32A-50", "HPN-14A-5") == {f"gear.{name}" for name in lighter}
+    assert better("HPN-14A-5", "HPN-32A-50") == {
         *(f"candidate.{name}" for name in figures),
         *(f"gear.{name}" for name in rated),
     }
+
+
+def test_rows_in_which_all_are_alike_stand_at_the_foot_and_no_others(catalogue: Catalogue) -> None:
+    """HPN-20A-5 and HPN-20A-7: one housing and one set of speeds (table 12.1), other ratings and figures."""
+    selection, asked = (
+        selected(worked_example(requirements={}), catalogue),
+        Application.model_validate(worked_example(requirements={})),
+    )
+    accounts = [Account(selection, candidate(selection, f"HPN-20A-{i}"), asked, catalogue) for i in (5, 7)]
+    *others, foot = groups_of(accounts)
+
+    assert {row.standings for row in foot.rows} == {("reference", "alike")}
+    assert all(row.standings != ("reference", "alike") for group in others for row in group.rows)
+    assert {"gear.weight_kg", "gear.length"} <= {row.head.code for row in foot.rows}
+    assert "candidate.life_L10_h" not in {row.head.code for row in foot.rows}
 
 
 def test_each_check_and_each_published_figure_stands_in_the_comparison_once(catalogue: Catalogue) -> None:
     selection, asked = selected(worked_example(), catalogue), Application.model_validate(worked_example())
     accounts = [Account(selection, candidate(selection, f"HPN-{size}-5"), asked, catalogue) for size in ("14A", "20A")]
     codes = [row.head.code for group in groups_of(accounts) for row in group.rows]
-    published = [line.code for line in accounts[0].published if line.value is not None]
+    known = [line.code for line in ranged(accounts[0].published) if line.value is not None]
 
     assert len(codes) == len(set(codes))
-    assert {*selection.check_definitions, *published} <= set(codes)
+    assert {*selection.check_definitions, *known} <= set(codes)
 
 
 def test_motor_torque_without_an_efficiency_is_said_to_be_a_lower_bound(catalogue: Catalogue) -> None:
@@ -119,7 +141,7 @@ def test_an_unrated_gear_is_not_unlimited_though_it_fails_a_property_check(catal
     rows = compared(asked, catalogue, "HPN-40A-5", "HPN-20A-5")
     assert values(rows["candidate.life_L10_h"])[0] is None
     stops = rows["candidate.momentary_peak_count"]
-    assert values(stops)[0] is None and stops.best == frozenset()
+    assert values(stops)[0] is None and stops.standings == ("reference", "")
 
 
 def test_each_figure_is_unlimited_by_its_own_rating(supplemented: Supplement) -> None:
@@ -146,7 +168,7 @@ def test_a_bearing_without_points_of_its_curve_has_no_life_to_compare(supplement
     life = compared(asked, filled, "HPN-20A-5", "HPN-14A-5")["candidate.bearing_life_L50_h"]
 
     assert values(life) == [candidate(selected(asked, filled), "HPN-20A-5").bearing_life_L50_h, None]
-    assert life.best == frozenset()
+    assert life.standings == ("reference", "")
 
 
 def test_a_bearing_under_no_load_is_unlimited(catalogue: Catalogue) -> None:

@@ -29,7 +29,7 @@ def test_every_candidate_is_listed_once_in_the_order_of_the_reply(catalogue: Cat
     listed, given = answer.listed, answer.selection.candidates
 
     rejected = [candidate for group in listed.rejected for candidate in group.candidates]
-    assert (*listed.first, *listed.more) == tuple(c for c in given if c.status == "suitable")
+    assert listed.suitable == tuple(c for c in given if c.status == "suitable")
     assert listed.unrated == tuple(c for c in given if c.status == "unrated" and not c.missing)
     assert listed.lacking == tuple(c for c in given if c.missing)
     assert sorted(rejected, key=given.index) == [c for c in given if c.status == "unsuitable"]

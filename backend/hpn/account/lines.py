@@ -52,6 +52,11 @@ class Line:
     is_lower_bound: bool = False
     is_supplied: bool = False
 
+    @property
+    def end(self) -> Value | None:
+        """Largest value: the end of a range, else the value."""
+        return self.value if self.until is None else self.until
+
     def of(self, value: Value | None) -> "Line":
         """The same quantity with another value."""
         return replace(self, value=value)

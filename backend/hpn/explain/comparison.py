@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
 from itertools import zip_longest
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from msgspec import structs
@@ -28,6 +28,9 @@ TOLERANCE = 1e-12
 
 K = TypeVar("K")
 V = TypeVar("V")
+
+Standing = Literal["reference", "better", "alike", ""]
+"""Figure of a gear beside that of the first one, which is the reference; blank where it is worse, or merely another."""
 
 
 def is_number(value: Any) -> bool:
@@ -58,10 +61,10 @@ def aligned(*sides: Mapping[K, V]) -> Iterator[tuple[K, tuple[V | None, ...]]]:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One quantity of all accounts, None where one says nothing of it; `best` are the places of those ahead."""
+    """One quantity of all accounts, None where one says nothing of it; `standings` are those of gears side by side."""
 
     lines: tuple[Line | None, ...]
-    best: frozenset[int] = frozenset()
+    standings: tuple[Standing, ...] = ()
 
     @property
     def head(self) -> Line:
@@ -87,10 +90,10 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class CheckRow:
-    """One check of all accounts, None where it was not asked for; `best` likewise."""
+    """One check of all accounts, None where it was not asked for; `standings` likewise."""
 
     checks: tuple[CheckLine | None, ...]
-    best: frozenset[int] = frozenset()
+    standings: tuple[Standing, ...] = ()
 
     @property
     def head(self) -> CheckLine:
@@ -170,11 +173,13 @@ LESS: Mapping[str, bool] = {
     "gear.backlash_arcmin": True,
     "gear.transmission_accuracy_arcmin": True,
     "gear.torsional_stiffness_Nm_per_rad": False,
-    "gear.length_min_mm": True,
-    "gear.length_max_mm": True,
+    "gear.length": True,
     "gear.weight_kg": True,
 }
 """Figures of which less is better, or more; of any other no gear is better than another."""
+
+
+ALIKE = N_("Alike in all")
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,40 +191,52 @@ class RowGroup:
 
 
 def groups_of(accounts: Sequence[Account]) -> list[RowGroup]:
-    """Gears of one selection side by side: utilisations, figures under the cycle, and published figures."""
+    """Gears of one selection beside the first of them: utilisations, figures under the cycle, and published figures.
+
+    Rows in which all are alike stand at the end; they stay in their places where nothing is compared.
+    """
     figures = rows_of(*([line for line in one.figures if line.kind == "computed"] for one in accounts))
-    printed = rows_of(*([*account.published, *published.bolts(account.gear)] for account in accounts))
-    return [
-        RowGroup(N_("Utilisation"), [_check_ahead(row) for row in checks_of(*accounts)]),
-        RowGroup(N_("Figures of the gear under the cycle"), _ahead(figures)),
-        *(
-            RowGroup(title, known)
-            for title, rows in published.grouped(printed, lambda row: row.head.code)
-            if (known := _ahead(rows))
-        ),
+    printed = rows_of(*(published.ranged([*account.published, *published.bolts(account.gear)]) for account in accounts))
+    groups = [
+        RowGroup(N_("Utilisation"), [_check_beside(row) for row in checks_of(*accounts)]),
+        RowGroup(N_("Figures of the gear under the cycle"), _beside(figures)),
+        *(RowGroup(title, _beside(rows)) for title, rows in published.grouped(printed, lambda row: row.head.code)),
     ]
+    if len(accounts) > 1:
+        alike = [row for group in groups for row in group.rows if set(row.standings[1:]) == {"alike"}]
+        groups = [replace(group, rows=[row for row in group.rows if row not in alike]) for group in groups]
+        groups.append(RowGroup(ALIKE, alike))
+    return [group for group in groups if group.rows]
 
 
-def _ahead(rows: Iterable[Row]) -> list[Row]:
-    return [replace(row, best=_best_of(row)) for row in rows if row.is_known]
+def _beside(rows: Iterable[Row]) -> list[Row]:
+    return [replace(row, standings=_standings_of(row)) for row in rows if row.is_known]
 
 
-def _best_of(row: Row) -> frozenset[int]:
-    lowest = LESS.get(row.head.code)
-    values = [math.inf if line and line.value == UNLIMITED else line and line.value for line in row.lines]
-    return frozenset() if lowest is None else _best(values, lowest=lowest)
+def _standings_of(row: Row) -> tuple[Standing, ...]:
+    values = [(_rank(line), line and line.until) for line in row.lines]
+    return _standings(values, LESS.get(row.head.code))
 
 
-def _check_ahead(row: CheckRow) -> CheckRow:
-    return replace(row, best=_best([check and check.result.utilisation for check in row.checks], lowest=True))
+def _rank(line: Line | None) -> Any:
+    return math.inf if line and line.value == UNLIMITED else line and line.value
 
 
-def _best(values: Sequence[Any], *, lowest: bool) -> frozenset[int]:
-    """Places of the values that are ahead, none where all are equal."""
-    numbers = np.array([value if is_number(value) else np.nan for value in values], dtype=np.float64)
-    known = ~np.isnan(numbers)
-    places = equations.tied(numbers if lowest else -numbers)
-    return frozenset(np.flatnonzero((places == 0) & known & (np.unique(places[known]).size > 1)).tolist())
+def _check_beside(row: CheckRow) -> CheckRow:
+    values = [(check and check.result.utilisation, None) for check in row.checks]
+    return replace(row, standings=_standings(values, lowest=True))
+
+
+def _standings(values: Sequence[tuple[Any, Any]], lowest: bool | None) -> tuple[Standing, ...]:
+    """How each value stands beside the first one; the end of a range counts where it begins alike."""
+    (first, first_end), *others = values
+    standings: list[Standing] = ["reference"]
+    for value, end in others:
+        begins_alike = is_same(value, first)
+        one, other = (end, first_end) if begins_alike else (value, first)
+        is_ahead = lowest is not None and is_number(one) and is_number(other) and (one < other) == lowest
+        standings.append("alike" if begins_alike and is_same(end, first_end) else "better" if is_ahead else "")
+    return tuple(standings)
 
 
 # --- Not dominated (Pareto) -------------------------------------------------------------------------------------------

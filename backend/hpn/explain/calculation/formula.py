@@ -6,12 +6,12 @@ One tree serves all three, so that what a reader sees substituted is what the re
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Self, cast
 
-from hpn.physics.equations import FloatArray
+import numpy as np
 
-SHOWN_TERMS = 6
-"""A series over more phases is abbreviated."""
+from hpn.physics.equations import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,22 +105,33 @@ class Sum(Expression):
     terms: "tuple[Formula, ...]"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Series(Expression):
-    """A sum over the phases. `pattern` is its first, second and last term in symbols.
+    """A sum over the phases: `make` gives the term of a phase from its quantities, in their order."""
 
-    Of a long series only the first terms are kept, and the last one; `total` is the value of all `count` of them.
-    """
+    make: "Callable[..., Formula]"
+    quantities: tuple[PhaseValues, ...]
 
-    pattern: "tuple[Formula, Formula, Formula]"
-    terms: "tuple[Formula, ...]"
-    count: int
-    total: float
+    @cached_property
+    def general(self) -> "Formula":
+        """Term of any phase, with the index j."""
+        return self.make(*(quantity.term("j", 0) for quantity in self.quantities))
 
-    @property
-    def abbreviated(self) -> bool:
-        """True where terms in the middle are left out."""
-        return self.count > len(self.terms)
+    @cached_property
+    def total(self) -> float:
+        """Sum of all terms."""
+        return math.fsum(self.values(self.general).tolist())
+
+    def __len__(self) -> int:
+        return len(self.quantities[0].values)
+
+    def values(self, of: "Formula", shown: Callable[[FloatArray, str], FloatArray] | None = None) -> FloatArray:
+        """The general term or a factor of it in every phase, shape (phases,); `shown` gives quantities other units."""
+        values = {
+            each.symbol.of_phase("j"): shown(each.values, each.unit) if shown else each.values
+            for each in self.quantities
+        }
+        return np.broadcast_to(values_of(of, values), len(self))
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,23 +245,7 @@ def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
 
 def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> Series:
     """Series over the phases; `make` gives the term of a phase from its quantities, in their order."""
-    count = len(quantities[0].values)
-
-    def term(index: str, place: int) -> Formula:
-        return make(*(quantity.term(index, place) for quantity in quantities))
-
-    shown: Sequence[int] = range(count)
-    if count > SHOWN_TERMS:
-        shown = (*range(SHOWN_TERMS - 2), count - 1)
-    general = term("n", 0)
-    every = values_of(general, {quantity.symbol.of_phase("n"): quantity.values for quantity in quantities})
-    terms = tuple(term(str(place + 1), place) for place in shown)
-    return Series((term("1", 0), term("2", 0), general), terms, count, math.fsum(every.tolist()))
-
-
-def leaves_out(formula: Formula) -> bool:
-    """True where a series in a formula is abbreviated."""
-    return any(isinstance(one, Series) and one.abbreviated for one in inside(formula))
+    return Series(make, quantities)
 
 
 def in_wire_units(formula: Formula) -> bool:

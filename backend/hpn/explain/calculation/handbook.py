@@ -20,7 +20,7 @@ LARGEST_WORTH_ROUNDING = 1e6
 
 
 def _average_torque(sheet: Sheet) -> Iterable[Step]:
-    above = over_phases(lambda n, t, T: abs(n * t) * T**TEN_THIRDS, sheet.speed, sheet.time, sheet.torque)
+    above = over_phases(lambda n, t, T: abs(n) * t * T**TEN_THIRDS, sheet.speed, sheet.time, sheet.torque)
     notes = [
         Sentence(
             N_(

@@ -1,7 +1,8 @@
 """Formulas as MathML for page and report, in symbols or with the numbers substituted, and as a line of text."""
 
-from collections.abc import Iterable
-from dataclasses import replace
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from html import escape
 
 from hpn.explain.calculation.formula import (
@@ -19,11 +20,16 @@ from hpn.explain.calculation.formula import (
     Term,
     Variable,
     in_wire_units,
+    inside,
     value_of,
 )
-from hpn.explain.calculation.sheet import Comparison, Line
+from hpn.explain.calculation.sheet import Comparison, Line, Step
+from hpn.physics.equations import FloatArray
 from hpn.words.reader import Reader
 from hpn.words.wording import Quantity
+
+SHOWN_TERMS = 6
+"""A sum over more phases is abbreviated."""
 
 DIGITS = 9
 """Significant digits of a substituted number: enough to calculate the next line by hand."""
@@ -89,6 +95,62 @@ def compared(reader: Reader, comparison: Comparison, *, continued: bool = False)
     return mathml(reader, *parts, (Constant(comparison.bound, comparison.unit), True))
 
 
+# --- Sums over the phases ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Addition:
+    """Sums of a step as columns: a head for each, rows by the numbers of their phases, and what each adds up to.
+
+    `left_out` is the number of phases in the middle that are not written out.
+    """
+
+    heads: list[str]
+    rows: list[tuple[int, list[str]]]
+    totals: list[str]
+    left_out: int
+
+
+def addition(reader: Reader, step: Step) -> Addition | None:
+    """Sums of a step, where a term is more than a product of inputs, with every power that it takes."""
+    series = [one for line in step.lines for one in inside(line.formula) if isinstance(one, Series)]
+    columns = list[tuple[Series, Formula]]()
+    for one in sorted(series, key=lambda one: len(_factors(one.general))):
+        powers = [factor for factor in _factors(one.general) if isinstance(factor, Power)]
+        columns += [
+            (one, formula) for formula in (*powers, one.general) if formula not in [each for _, each in columns]
+        ]
+    if all(formula is one.general for one, formula in columns):
+        return None
+    reader = replace(reader, units=()) if any(in_wire_units(line.formula) for line in step.lines) else reader
+    values = [one.values(formula, _in_units_of(reader)).tolist() for one, formula in columns]
+    count = len(series[0])
+    places = range(count) if count <= SHOWN_TERMS else [*range(SHOWN_TERMS - 2), count - 1]
+    return Addition(
+        [mathml(reader, (formula, False)) for _, formula in columns],
+        [(place + 1, [_written(reader, each[place]) for each in values]) for place in places],
+        [total(reader, one) if formula is one.general else "" for one, formula in columns],
+        count - len(places),
+    )
+
+
+def _factors(formula: Formula) -> tuple[Formula, ...]:
+    return formula.factors if isinstance(formula, Product) else (formula,)
+
+
+def total(reader: Reader, series: Series) -> str:
+    """Sum of a series of quantities in the reader's units."""
+    return _written(reader, math.fsum(series.values(series.general, _in_units_of(reader)).tolist()))
+
+
+def _in_units_of(reader: Reader) -> Callable[[FloatArray, str], FloatArray]:
+    return lambda values, unit: values * float(reader.measure(unit).factor)
+
+
+def _written(reader: Reader, value: float) -> str:
+    return number(reader, value, "")
+
+
 def _is_negative(formula: Formula) -> bool:
     return isinstance(formula, Term | Constant) and formula.value < 0
 
@@ -114,8 +176,10 @@ class _Writer:
                 return self.number(formula.value, formula.unit)
             case Sum(terms):
                 return self.row("+", map(self.write, terms))
+            case Series(general=Term(unit=unit)) if self.numbers:
+                return self.number(formula.total, unit)
             case Series():
-                return self.row("+", self.terms(formula))
+                return self.plain(total(self.reader, formula)) if self.numbers else self.summed(formula.general)
             case Subtraction(left, right):
                 return self.row("−", (self.write(left), self.factor(right)))
             case Product(factors):
@@ -153,7 +217,7 @@ class _Writer:
 
     def factor(self, formula: Formula) -> str:
         """A factor of a product, or what is subtracted: in brackets where it is a sum or a negative number."""
-        in_brackets = isinstance(formula, Sum | Subtraction | Series) or (self.numbers and _is_negative(formula))
+        in_brackets = isinstance(formula, Sum | Subtraction) or (self.numbers and _is_negative(formula))
         return self.fenced("(", formula, ")") if in_brackets else self.write(formula)
 
     def base(self, formula: Formula) -> str:
@@ -165,12 +229,13 @@ class _Writer:
         """A function of some arguments."""
         return f"<mrow><mi>{name}</mi><mo>(</mo>{_operator(';').join(arguments)}<mo>)</mo></mrow>"
 
-    def terms(self, series: Series) -> list[str]:
-        """Terms of a series: the general ones in symbols, the kept ones in numbers."""
-        terms = [self.write(term) for term in (series.terms if self.numbers else series.pattern)]
-        return [*terms[:-1], self.dots, terms[-1]] if series.abbreviated or not self.numbers else terms
+    def plain(self, text: str) -> str:
+        """A number as it is written, without a unit."""
+        return f"<mn>{escape(text)}</mn>"
 
-    dots = "<mo>…</mo>"
+    def summed(self, general: Formula) -> str:
+        """A sum over the phases by its general term."""
+        return f"<mrow><mo>Σ</mo>{self.write(general)}</mrow>"
 
     def symbol(self, symbol: Variable) -> str:
         """A letter with its index."""
@@ -181,7 +246,7 @@ class _Writer:
 
     def number(self, value: float, unit: str) -> str:
         """A number with its unit."""
-        text = f"<mn>{escape(number(self.reader, value, unit))}</mn>"
+        text = self.plain(number(self.reader, value, unit))
         if not unit:
             return text
         return f'<mrow>{text}<mtext class="unit">\u202f{escape(self.reader.unit(unit))}</mtext></mrow>'
@@ -189,8 +254,6 @@ class _Writer:
 
 class _Liner(_Writer):
     """Writes a line of text, not escaped yet."""
-
-    dots = "…"
 
     def row(self, operator: str, parts: Iterable[str]) -> str:
         """Parts with an operator between them."""
@@ -218,6 +281,14 @@ class _Liner(_Writer):
     def call(self, name: str, arguments: Iterable[str]) -> str:
         """A function of some arguments."""
         return f"{name}({'; '.join(arguments)})"
+
+    def plain(self, text: str) -> str:
+        """A number as it is written, without a unit."""
+        return text
+
+    def summed(self, general: Formula) -> str:
+        """A sum over the phases by its general term."""
+        return f"Σ {self.write(general)}"
 
     def symbol(self, symbol: Variable) -> str:
         """A letter with its index."""

@@ -21,7 +21,6 @@ from hpn.explain.calculation.formula import (
     Sum,
     Term,
     Variable,
-    leaves_out,
     over_phases,
     value_of,
 )
@@ -87,11 +86,6 @@ class Step:
         if not self.lines or not self.comparisons or self.lines[-1].rounded_down:
             return False
         return self.comparisons[0].tested == self.lines[-1].result
-
-    @property
-    def abbreviated(self) -> bool:
-        """True where some of the phases are not written out."""
-        return any(leaves_out(line.formula) for line in self.lines)
 
 
 def step_of_check(

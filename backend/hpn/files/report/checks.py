@@ -1,6 +1,5 @@
 """Checks of the reported gear and the equations behind them: symbols, numbers, limits and sources."""
 
-from collections.abc import Iterator
 from typing import Any
 
 from hpn.account.account import Account, CheckLine
@@ -76,15 +75,8 @@ def _of_step(step: Step, export: Export, reader: Reader) -> Row:
         "title": sentence(reader.text(step.title)),
         "lines": lines,
         "where": row["where"] or ("" if step.equation else reader.text(N_("Not printed in the handbook."))),
-        "notes": [sentence(reader.told(note)) for note in (*step.notes, *_left_out(step, export, reader))],
+        "notes": [sentence(reader.told(note)) for note in step.notes],
     }
-
-
-def _left_out(step: Step, export: Export, reader: Reader) -> Iterator[Sentence]:
-    if step.abbreviated:
-        count = len(export.application.duty_cycle.load_phases)
-        text = N_("Only some of the {count} phases are written out; the result includes all of them.")
-        yield Sentence(text, {"count": reader.exact(count)})
 
 
 def _row(code: str) -> Row:

@@ -25,9 +25,6 @@ from hpn.words.quantities import LISTED
 from hpn.words.reader import Reader
 from hpn.words.wording import Named, Sentence
 
-LISTED_AT_ONCE = 8
-"""Suitable gears that the list shows before somebody unfolds the rest."""
-
 
 @dataclass(frozen=True, slots=True)
 class RejectedSize:
@@ -39,15 +36,14 @@ class RejectedSize:
 
 @dataclass(frozen=True, slots=True)
 class CandidateList:
-    """The candidates as they are listed: suitable ones in parts, then those that lack an input alone, rejected ones by
-    size, nearest miss first, and the other unrated ones.
+    """The candidates as they are listed: suitable ones, then those that lack an input alone, rejected ones by size,
+    nearest miss first, and the other unrated ones.
 
     `ties` are runs of suitable gears of one size that differ neither in what they are ranked by nor in weight and
     utilisation, so that L10 alone orders them.
     """
 
-    first: tuple[Candidate, ...]
-    more: tuple[Candidate, ...]
+    suitable: tuple[Candidate, ...]
     lacking: tuple[Candidate, ...]
     rejected: tuple[RejectedSize, ...]
     unrated: tuple[Candidate, ...]
@@ -56,7 +52,7 @@ class CandidateList:
     @property
     def count(self) -> int:
         """Number of suitable gears."""
-        return len(self.first) + len(self.more)
+        return len(self.suitable)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,8 +168,7 @@ class Result:
         for candidate in by_status["unsuitable"]:
             sizes.setdefault(candidate.size, []).append(candidate)
         return CandidateList(
-            first=suitable[:LISTED_AT_ONCE],
-            more=suitable[LISTED_AT_ONCE:],
+            suitable=suitable,
             rejected=tuple(RejectedSize(size, tuple(group)) for size, group in sizes.items()),
             lacking=tuple(candidate for candidate in by_status["unrated"] if candidate.missing),
             unrated=tuple(candidate for candidate in by_status["unrated"] if not candidate.missing),

@@ -21,6 +21,7 @@ from hpn.engine.candidates import REASONS, Candidate, reason_of
 from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.remedy import DRIVER_NAMES
 from hpn.explain.calculation import calculation_of, mathml
+from hpn.explain.comparison import ALIKE
 from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
@@ -274,6 +275,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "stiffness": _stiffness,
     "symbols": with_symbols,
     "t": _for_reader("text"),
+    "addition": pass_context(lambda _, step: mathml.addition(current(), step)),
     **{
         write.__name__: _as_mathml(write)
         for write in (mathml.in_symbols, mathml.substituted, mathml.result, mathml.compared)
@@ -292,6 +294,7 @@ NOT_USED = {"FR": "radial_load_not_used", "FA": "axial_load_not_used"}
 """Inputs that may count for nothing beside others, and the notice that says so at their fields."""
 
 GLOBALS: dict[str, Any] = {
+    "ALIKE": ALIKE,
     "BEARING_MODELS": BEARING_MODELS,
     "RANKINGS": RANKINGS,
     "REASONS": REASONS,
