@@ -183,7 +183,7 @@ INSIDE = """() => [...document.querySelectorAll(".result *")].filter((box) => {
   const { overflowX, overflowY } = getComputedStyle(box);
   const scrolls = [overflowX, overflowY].some((way) => ["auto", "scroll"].includes(way));
   return box.checkVisibility() && box.closest("#candidates, #compare, #calculation")
-    && (scrolls || (!box.closest(".visually-hidden") && box.getBoundingClientRect().right > innerWidth + 1));
+    && (scrolls || (!box.closest(".visually-hidden, svg") && box.getBoundingClientRect().right > innerWidth + 1));
 }).map((box) => `${box.closest(".section").id} ${box.className || box.localName}`)"""
 """Boxes of the three sections that scroll by themselves, or are wider than the page."""
 

@@ -77,6 +77,20 @@ def _reader_of(reader: Reader, line: Line) -> Reader:
 
 def compared(reader: Reader, comparison: Comparison, *, continued: bool = False) -> str:
     """Comparison of demand and limit, which the user's own reserve may lower; `continued` behind its equation."""
+    return mathml(reader, *_compared(comparison, continued))
+
+
+def compared_apart(reader: Reader, comparison: Comparison, *, continued: bool = False) -> str:
+    """The same with an element for each side, so that a narrow page breaks it before a sign and nowhere else."""
+    sides: list[list[Part]] = [[]]
+    for part in _compared(comparison, continued):
+        if isinstance(part, str) and sides[-1]:
+            sides.append([])
+        sides[-1].append(part)
+    return "".join(mathml(reader, *side) for side in sides)
+
+
+def _compared(comparison: Comparison, continued: bool) -> list[Part]:
     tested, u = comparison.tested, comparison.allowed
     parts: list[Part] = ["="] if continued else [(tested, False), "="]
     if not isinstance(tested, Term):
@@ -86,13 +100,13 @@ def compared(reader: Reader, comparison: Comparison, *, continued: bool = False)
     if u == 1:
         for name in comparison.limit_names:
             parts += [(name, False), "="]
-        return mathml(reader, *parts, (limit, True))
+        return [*parts, (limit, True)]
     named = Term(comparison.limit_names[-1], 0.0) if comparison.limit_names else limit
     reserve = Term(Variable("u"), u)
     for numbers, factor in ((False, named), (True, limit)):
         reserved = reserve * factor if comparison.relation == "≤" else factor / reserve
         parts += [(reserved, numbers), "="]
-    return mathml(reader, *parts, (Constant(comparison.bound, comparison.unit), True))
+    return [*parts, (Constant(comparison.bound, comparison.unit), True)]
 
 
 # --- Sums over the phases ---------------------------------------------------------------------------------------------

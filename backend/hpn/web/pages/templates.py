@@ -278,7 +278,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "addition": pass_context(lambda _, step: mathml.addition(current(), step)),
     **{
         write.__name__: _as_mathml(write)
-        for write in (mathml.in_symbols, mathml.substituted, mathml.result, mathml.compared)
+        for write in (mathml.in_symbols, mathml.substituted, mathml.result, mathml.compared_apart)
     },
     "number": _of_line("number"),
     "text": _of_line("text"),
