@@ -14,7 +14,16 @@ from hpn.store.machines import alive
 from hpn.store.records import Answer, AxisDraft, RevisionDraft, RevisionLine
 from hpn.store.saved import search_text, unpacked
 from hpn.store.tables import axes, documents, revisions
-from hpn.store.writing import axis_row, insert_axes, insert_revision, order_of, order_text, recount
+from hpn.store.writing import (
+    SEARCHED,
+    axis_row,
+    insert_axes,
+    insert_revision,
+    keep_catalogue,
+    order_of,
+    order_text,
+    recount,
+)
 
 Row = dict[str, Any]
 
@@ -142,13 +151,16 @@ async def _document_values(
         order[:] = made.order
     order += [*numbers, *(number for number, _ in made.restored)]
     values["axis_order"] = order_text(order)
-    if values.keys() & {"title", "reference", "author"}:
-        c = documents.c
-        query = select(c.title, c.reference, c.author, c.ordering_code, c.designation).where(c.id == id)
-        named = (await connection.execute(query)).one()._asdict() | values
-        texts = (named[name] for name in ("title", "reference", "author", "ordering_code", "designation"))
-        values["search_text"] = search_text(*texts)
-    return values
+    return values | await _search_values(connection, id, values)
+
+
+async def _search_values(connection: AsyncConnection, id: str, values: Row) -> Row:
+    """Text by which a document is found, where values change that stand in it."""
+    if not values.keys() & set(SEARCHED):
+        return {}
+    query = select(*(documents.c[name] for name in SEARCHED)).where(documents.c.id == id)
+    named = (await connection.execute(query)).one()._asdict() | values
+    return {"search_text": search_text(*(named[name] for name in SEARCHED))}
 
 
 async def _require_within(connection: AsyncConnection, id: str, limits: Limits) -> None:
@@ -181,12 +193,32 @@ async def freeze(
         raise LabelTakenError(draft.label)
     if number > limits.revisions:
         raise ExcessError("revisions", limits.revisions)
+    if draft.catalogue is not None:
+        await keep_catalogue(connection, draft.catalogue_version, draft.catalogue)
     await insert_revision(connection, id, number, draft, now)
-    values = {"revisions": number, "revision": draft.label, "updated": now}
+    values: Row = {"revisions": number, "revision": draft.label, "updated": now, **draft.head}
+    values |= await _search_values(connection, id, values)
+    if draft.axis is not None:
+        values |= await _working_copy(connection, id, draft, draft.axis, now)
     await connection.execute(update(documents).where(documents.c.id == id).values(values))
+    if draft.axis is not None:
+        await recount(connection, id, now)
     if once is not None:
         await keep_part(connection, once.key, draft.label)
     return draft.label
+
+
+async def _working_copy(
+    connection: AsyncConnection, id: str, draft: RevisionDraft, axis: AxisDraft, now: datetime
+) -> Row:
+    """Make an axis the working copy of a selection; columns of the document that change with it.
+
+    Common values end with it: its application is whole.
+    """
+    c = axes.c
+    row = axis_row(axis, now, draft.created_by or draft.author) | {"version": c.version + 1}
+    await connection.execute(update(axes).where(c.document == id, c.removed.is_(None)).values(row))
+    return {"common": "{}", "version": documents.c.version + 1, "bytes": len(axis.application)}
 
 
 LINE = [revisions.c[each.name] for each in fields(RevisionLine)]

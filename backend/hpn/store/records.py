@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, Literal
 
+from hpn.catalogue import Catalogue
+
 
 def new_id() -> str:
     """A new id."""
@@ -54,7 +56,11 @@ class SavedAxis(AxisDraft):
 
 @dataclass(frozen=True, slots=True)
 class RevisionDraft:
-    """A document to be frozen under a label; `content` is what there is of it, `result` the reply to a selection."""
+    """A document to be frozen under a label; `content` is what there is of it, `result` the reply to a selection.
+
+    `head` has the columns of a selection's line that follow its latest revision, `axis` what becomes of its working
+    copy with this one; None where it is frozen as it is. The store keeps one copy of each version of the catalogue.
+    """
 
     label: str
     content: bytes = field(repr=False)
@@ -67,6 +73,9 @@ class RevisionDraft:
     note: str | None = None
     created_by: str | None = None
     result: bytes | None = field(default=None, repr=False)
+    head: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    axis: AxisDraft | None = field(default=None, repr=False)
+    catalogue: Catalogue | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

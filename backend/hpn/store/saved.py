@@ -11,7 +11,7 @@ import orjson
 import zstandard
 
 from hpn.catalogue import Catalogue
-from hpn.store.records import ANSWER, LISTS, new_id
+from hpn.store.records import ANSWER, LISTS, RevisionLine, new_id
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +89,14 @@ class Summary:
 
 @dataclass(frozen=True, slots=True)
 class SavedSelection(Summary):
-    """A saved selection, whole; `owner` is the name of the API key that saved it, None without one."""
+    """A saved selection as a revision has it; `owner` is the name of the API key that saved it, None without one.
+
+    `label` is that of this revision, `revisions` are all, the latest first.
+    """
 
     owner: str | None
+    label: str
+    revisions: tuple[RevisionLine, ...]
     application: bytes = field(repr=False)
     result: bytes = field(repr=False)
 

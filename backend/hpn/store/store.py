@@ -7,6 +7,7 @@ import re
 import time
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
+from typing import Any
 
 import brotli
 import msgspec
@@ -43,17 +44,39 @@ TRIAL_SECONDS = 1.0
 ID = re.compile(r"[A-Za-z0-9_-]{22}")
 """An id: 128 random bits."""
 
+LABEL = re.compile(r"[A-Za-z0-9._-]{1,20}")
+"""A label of a revision."""
+
 SUMMARY = [documents.c[name] for name in Summary.__dataclass_fields__]
+
+
+class _Answer(msgspec.Struct):
+    selected: str | None = None
+    designation: str | None = None
+    status: str | None = None
+    utilisation: float | None = None
 
 
 class _Axis(msgspec.Struct):
     """The axis of a selection's revision: what it was answered for."""
 
     resolved: msgspec.Raw
+    answer: _Answer = msgspec.field(default_factory=_Answer)
+    ordering_code: str | None = None
 
 
 class _Frozen(msgspec.Struct):
     axes: tuple[_Axis]
+    title: str | None = None
+    reference: str | None = None
+    author: str | None = None
+
+    @property
+    def head(self) -> dict[str, Any]:
+        """What its line in the list was."""
+        (axis,) = self.axes
+        block = {"title": self.title, "reference": self.reference, "author": self.author}
+        return block | msgspec.structs.asdict(axis.answer) | {"ordering_code": axis.ordering_code}
 
 
 _frozen = msgspec.json.Decoder(_Frozen).decode
@@ -111,21 +134,28 @@ class Store(Transactions):
         """
         return await self._write(lambda connection: insert(connection, draft))
 
-    async def find(self, id: str) -> SavedSelection | None:
-        """The selection with this id as its latest revision has it, or None."""
-        if not ID.fullmatch(id):
+    async def find(self, id: str, label: str | None = None) -> SavedSelection | None:
+        """The selection with this id as its latest revision has it, or that of a label, or None."""
+        if not ID.fullmatch(id) or not (label is None or LABEL.fullmatch(label)):
             return None
         c, r = documents.c, revisions.c
-        latest = (r.document == c.id) & (r.number == c.revisions)
-        query = select(*SUMMARY, c.owner, r.content_packed, r.result_packed).join_from(documents, revisions, latest)
+        wanted = r.number == c.revisions if label is None else r.label_key == label.casefold()
+        query = select(*SUMMARY, c.owner, r.number, r.content_packed, r.result_packed)
+        query = query.join_from(documents, revisions, (r.document == c.id) & wanted)
         async with self._reading() as connection:
             row = (await connection.execute(query.where(c.id == id, c.kind == "selection"))).one_or_none()
+            lines = () if row is None else tuple(await read_revisions(connection, id))
         if row is None:
             return None
         fields = row._asdict()
-        content, result = fields.pop("content_packed"), fields.pop("result_packed")
-        application = bytes(_frozen(unpacked(content)).axes[0].resolved)
-        return SavedSelection(**fields, application=application, result=unpacked(result))
+        number, result = fields.pop("number"), unpacked(fields.pop("result_packed"))
+        frozen = _frozen(unpacked(fields.pop("content_packed")))
+        line = next(each for each in lines if each.number == number)
+        if line is not lines[0]:
+            same = ("engine_version", "catalogue_version")
+            fields |= frozen.head | {name: getattr(line, name) for name in same} | {"revision": line.label}
+        application = bytes(frozen.axes[0].resolved)
+        return SavedSelection(**fields, label=line.label, revisions=lines, application=application, result=result)
 
     async def catalogue(self, version: str) -> Catalogue | None:
         """The catalogue that selections were saved under; None where no copy of it was kept, or none we can read."""
@@ -249,6 +279,8 @@ class Store(Transactions):
 
     async def revision(self, id: str, label: str) -> tuple[RevisionLine, bytes] | None:
         """The revision of a label in any case, and what is frozen in it; None where there is none."""
+        if not LABEL.fullmatch(label):
+            return None
         async with self._reading() as connection:
             return await read_revision(connection, id, label)
 

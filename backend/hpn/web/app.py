@@ -31,6 +31,7 @@ from hpn.web.api import (
     revisions,
     schemas,
     select,
+    selection_revisions,
     selections,
 )
 from hpn.web.door import problems, readers
@@ -111,6 +112,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     catalogue.router,
     motors.router,
     selections.router,
+    selection_revisions.router,
     machines.router,
     axes.router,
     revisions.router,

@@ -168,16 +168,18 @@ def _link(saved: SavedSelection, selection: Selection, catalogue: Catalogue) -> 
     return selection.link + gear + query_of(labels)
 
 
-async def found(request: Request, id: str, work: Callable[[Reopened], T]) -> T:
-    """A saved selection with its differences of today, computed on a worker; Problem 404 where there is none."""
+async def found(request: Request, id: str, work: Callable[[Reopened], T], label: str | None = None) -> T:
+    """A saved selection, or a revision of it, with its differences of today, computed on a worker; Problem 404."""
     state: State = request.app.state
-    saved, then = await with_catalogue(state, id)
+    saved, then = await with_catalogue(state, id, label)
     return await compute(request, "pages", lambda: work(reopen(saved, then, state.catalogue)))
 
 
-async def with_catalogue(state: State, id: str) -> tuple[SavedSelection, Catalogue | None]:
-    """A saved selection and the catalogue it was saved under, None where that is not kept; Problem 404."""
-    saved = await state.store.find(id)
+async def with_catalogue(state: State, id: str, label: str | None = None) -> tuple[SavedSelection, Catalogue | None]:
+    """A saved selection as its latest revision or that of a label, and the catalogue it was saved under, None where
+    that is not kept; Problem 404.
+    """
+    saved = await state.store.find(id, label)
     if saved is None:
         raise not_found(id)
     if saved.catalogue_version == state.catalogue.version:

@@ -192,11 +192,12 @@ async def read_axis(request: Request, id: schemas.Id, number: Number) -> Respons
 async def read_selection(request: Request, id: schemas.Id, number: Number) -> Response:
     """The answer of POST /api/v1/select to the axis; 409 for an axis that is open."""
     machine, axis = await axis_of(request, id, number)
-    body = await compute(request, "pages", _selection, machine, axis, request.app.state.catalogue)
+    body = await compute(request, "pages", selection_of, machine, axis, request.app.state.catalogue)
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
 
 
-def _selection(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes:
+def selection_of(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes:
+    """JSON of the selection of an axis; Problem 409 for one that is open."""
     found = resolved(axis, common_of(machine))
     if found.application is None:
         faults = [Fault(location, sentence.text, code) for location, sentence, code in found.faults]

@@ -122,8 +122,10 @@ def _route(file: File) -> None:
     content = described(file)
     Chosen = Annotated[Options, Depends(file.options)]
 
-    async def of_saved(request: Request, id: schemas.Id, chosen: Chosen, lang: Lang = None) -> Response:
-        saved, catalogue = await with_catalogue(request.app.state, id)
+    async def of_saved(
+        request: Request, id: schemas.Id, chosen: Chosen, lang: Lang = None, revision: schemas.Revision = None
+    ) -> Response:
+        saved, catalogue = await with_catalogue(request.app.state, id, revision)
         return await answer_file(request, file, lang, chosen, lambda: _of_saved(saved, catalogue, request))
 
     async def of_posted(request: Request, chosen: Chosen, lang: Lang = None) -> Response:

@@ -13,7 +13,7 @@ from hpn.documents.answers import AxisAnswer, AxisFault
 from hpn.documents.axis import MOST_AXES
 from hpn.documents.revision import Frozen, FrozenAxis
 from hpn.store import Line, Machine, RevisionLine, SavedAxis
-from hpn.web.api.replies import ProblemReply
+from hpn.web.api.replies import Moment, ProblemReply, RevisionReply
 from hpn.web.columns import answer_in, common_of, whole_of, without_of
 from hpn.web.door.problems import Problem
 from hpn.words.reply import Reply
@@ -24,7 +24,6 @@ OwnPart = Annotated[dict[str, Any], Field(description="Its own part of its appli
 Whole = Annotated[
     dict[str, Any], Field(description="Its application: own values and the common ones that hold for it.")
 ]
-Moment = Annotated[str, Field(description="Moment in UTC.", examples=["2026-11-26T08:30:00.000000Z"])]
 
 
 class AnswerReply(AxisAnswer, frozen=True):
@@ -109,22 +108,6 @@ class EffectReply(Reply, frozen=True):
     without_gear: Annotated[tuple[int, ...], Field(description="Numbers of the axes that have none after it.")]
     weight_before_kg: Annotated[float | None, Field(description="Mass of all gears of the machine before.")]
     weight_kg: Annotated[float | None, Field(description="Mass of all gears of the machine after it.")]
-
-
-class RevisionReply(Reply, frozen=True):
-    """One line of the list of revisions."""
-
-    label: Annotated[str, Field(description="Label.")]
-    number: Annotated[int, Field(description="Place in the order of revisions, from 1.")]
-    created: Moment
-    created_by: Annotated[str | None, Field(description="Key that froze it.")]
-    author: Annotated[str | None, Field(description="Author.")]
-    checked: Annotated[str | None, Field(description="Initials of the check.")]
-    approved: Annotated[str | None, Field(description="Initials of the approval.")]
-    note: Annotated[str | None, Field(description="Note.")]
-    axis_count: Annotated[int, Field(description="Number of axes.")]
-    engine_version: Annotated[str, Field(description="Version of the calculation.")]
-    catalogue_version: Annotated[str, Field(description="Catalogue.")]
 
 
 class RevisionsReply(Reply, frozen=True):

@@ -169,6 +169,7 @@ class EnvelopeReply(Reply, frozen=True):
 
 Id = Annotated[str, Field(description="Its id: 128 random bits.")]
 Url = Annotated[str, Field(description="Address of its page, relative to this service.")]
+Moment = Annotated[str, Field(description="Moment in UTC.", examples=["2026-11-26T08:30:00.000000Z"])]
 
 
 class SavedReply(Reply, frozen=True):
@@ -234,6 +235,22 @@ class TodayReply(Reply, frozen=True):
     ]
 
 
+class RevisionReply(Reply, frozen=True):
+    """One line of the list of revisions."""
+
+    label: Annotated[str, Field(description="Label.")]
+    number: Annotated[int, Field(description="Place in the order of revisions, from 1.")]
+    created: Moment
+    created_by: Annotated[str | None, Field(description="Key that froze it.")]
+    author: Annotated[str | None, Field(description="Author.")]
+    checked: Annotated[str | None, Field(description="Initials of the check.")]
+    approved: Annotated[str | None, Field(description="Initials of the approval.")]
+    note: Annotated[str | None, Field(description="Note.")]
+    axis_count: Annotated[int, Field(description="Number of axes.")]
+    engine_version: Annotated[str, Field(description="Version of the calculation.")]
+    catalogue_version: Annotated[str, Field(description="Catalogue.")]
+
+
 class SavedSelectionReply(SummaryReply, frozen=True):
     """A saved selection as it was saved, and what differs today. Nothing is rewritten."""
 
@@ -246,4 +263,6 @@ class SavedSelectionReply(SummaryReply, frozen=True):
         ),
     ]
     result: Annotated[Selection, Field(description="The complete reply.")]
+    label: Annotated[str, Field(description="Label of the revision that this is.")]
+    revisions: Annotated[list[RevisionReply], Field(description="Its revisions, the latest first.")]
     today: Annotated[TodayReply, Field(description="Differences today.")]

@@ -1,6 +1,5 @@
 """Revisions of documents over REST, and what is read out of the working copy: gears to order and fewest kinds."""
 
-from dataclasses import replace
 from typing import Annotated, NamedTuple
 
 from fastapi import APIRouter, Path, Query
@@ -13,35 +12,25 @@ from hpn.documents.differences import DocumentDifferences, differences, today
 from hpn.documents.gears import GearOrder, Placed, gears_of
 from hpn.documents.kinds import MachineKinds, Sought, kinds_of
 from hpn.documents.revision import NOW, TODAY, Frozen, RevisionBlock, decode, label_key
-from hpn.store import LabelTakenError, Machine, RevisionDraft, RevisionLine
+from hpn.store import Machine, RevisionLine
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
+from hpn.web.api.freezing import freeze, revision
 from hpn.web.api.machines import ADDRESS
-from hpn.web.api.replies import JSONBytes, encode
-from hpn.web.columns import common_of, frozen_of, resolved, revision_of
+from hpn.web.api.replies import JSONBytes, RevisionReply, encode
+from hpn.web.columns import common_of, frozen_of, resolved
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of
-from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.machines import (
-    LIMITS,
-    RETRY_SECONDS,
-    TRIES,
-    editable,
     found,
-    guarded,
     made_before,
-    of_today,
     once_of,
-    require_document,
 )
-from hpn.words.wording import N_, Sentence
 
 Label = Annotated[str, Path(max_length=20, description="Label of the revision, in any case.")]
-SAVE_FIRST = N_("nobody has saved this machine yet: save it first, then freeze a revision")
-TAKEN = N_("there is a revision {label} already: choose another label")
 
 router = APIRouter(prefix=f"{ADDRESS}/{{id}}", tags=["Machines"])
 
@@ -59,7 +48,7 @@ router = APIRouter(prefix=f"{ADDRESS}/{{id}}", tags=["Machines"])
             schemas.header("If-Match", "Tag of the machine."),
         ]
     },
-    response_model=replies.RevisionReply,
+    response_model=RevisionReply,
     responses=schemas.answers(
         *(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=schemas.headers("Location", "ETag")
     ),
@@ -70,39 +59,14 @@ async def save_revision(request: Request, id: schemas.Id) -> Response:
     block = parsed(RevisionBlock, body)
     if once is not None and (label := await made_before(request, once)) is not None:
         return await _kept_revision(request, id, label)
-    for _ in range(TRIES):
-        machine = await editable(request, id)
-        require_document(request, machine)
-        if machine.saved is None:
-            raise Problem(409, Sentence(SAVE_FIRST))
-        draft = await compute(request, "batches", _frozen, machine, block, request.app.state.catalogue)
-        draft = replace(draft, created_by=request.state.api_key)
-        try:
-            label = await guarded(request.app.state.store.freeze(id, machine.version, draft, LIMITS, once))
-        except LabelTakenError:
-            raise Problem(409, Sentence(TAKEN, {"label": block.label})) from None
-        if label is not None:
-            note(request, machine=id)
-            return await _kept_revision(request, id, label)
-    raise Problem.later("others are changing this machine at the moment; try again", RETRY_SECONDS)
+    label = await freeze(request, id, block, once)
+    return await _kept_revision(request, id, label)
 
 
 async def _kept_revision(request: Request, id: str, label: str) -> Response:
-    line, content = await _revision(request, id, label)
+    line, content = await revision(request, id, label)
     headers = {"Location": f"{ADDRESS}/{id}/revisions/{line.label}", "ETag": etag_of(content)}
     return JSONBytes(encode(replies.revision(line)), 201, headers)
-
-
-def _frozen(machine: Machine, block: RevisionBlock, catalogue: Catalogue) -> RevisionDraft:
-    draft = revision_of(of_today(machine, catalogue), block.label, author=block.author, note=block.note)
-    return replace(draft, checked=block.checked, approved=block.approved)
-
-
-async def _revision(request: Request, id: str, label: str) -> tuple[RevisionLine, bytes]:
-    kept: tuple[RevisionLine, bytes] | None = await request.app.state.store.revision(id, label)
-    if kept is None:
-        raise Problem(404, f"there is no revision {label[:20]!r}")
-    return kept
 
 
 @router.get(
@@ -132,7 +96,7 @@ async def list_revisions(request: Request, id: schemas.Id) -> Response:
 async def read_revision(request: Request, id: schemas.Id, label: Label) -> Response:
     """A document as it was frozen, its answers of then."""
     await found(request, id, [])
-    line, content = await _revision(request, id, label)
+    line, content = await revision(request, id, label)
     body = await compute(request, "pages", lambda: encode(replies.frozen(line, decode(content))))
     return JSONBytes(body, headers={"ETag": etag_of(content), "Cache-Control": "no-cache"})
 
@@ -180,7 +144,7 @@ async def state_of(request: Request, machine: Machine, label: str) -> State:
         return State(None, today_s)
     if label_key(label) == NOW:
         return State(machine, await _kept(request, machine.catalogue_version))
-    line, frozen = await _revision(request, machine.id, label)
+    line, frozen = await revision(request, machine.id, label)
     return State(frozen, await _kept(request, line.catalogue_version), line)
 
 

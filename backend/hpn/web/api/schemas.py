@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Annotated, Any
 
-from fastapi import Path
+from fastapi import Path, Query
 from pydantic import BaseModel, Field
 
 from hpn.application import WORKED_EXAMPLE, Application, BatchItem
@@ -205,6 +205,9 @@ FROM_MACHINE = _links("$request.path.id", *OF_A_MACHINE[1:])
 
 
 Id = Annotated[str, Path(description="Id from the reply to saving.")]
+Revision = Annotated[
+    str | None, Query(max_length=20, description="Label of a revision of the selection, in any case; else the latest.")
+]
 Designation = Annotated[str, Path(description="Designation in any of the printed spellings, such as HPN-20A-5.")]
 Size = Annotated[str, Path(description="Size, such as 20A.")]
 

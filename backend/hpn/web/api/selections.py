@@ -12,9 +12,10 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn import ENGINE_VERSION
-from hpn.application import InputError
+from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.store import Draft, SavedSelection, Store, Summary
+from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
 from hpn.web.api.replies import (
     DIFFERENCES_SHOWN,
@@ -29,6 +30,7 @@ from hpn.web.api.replies import (
 )
 from hpn.web.api.replies import encode as encode_reply
 from hpn.web.archive import (
+    Labels,
     Line,
     Names,
     Reopened,
@@ -106,20 +108,27 @@ async def save_selection(request: Request) -> Response:
     id = await keep(request, draft)
     headers = {"Location": f"/api/v1/selections/{id}"}
     if id == draft.id:
-        headers["ETag"] = _tag(id, 1, catalogue.version, catalogue)
+        headers["ETag"] = _tag(id, (1, draft.label), catalogue.version, catalogue)
     else:
         headers |= {"ETag": _tag_of(*await with_catalogue(request.app.state, id), catalogue), REPLAYED: "true"}
     if prefers_representation(request):
         headers["Preference-Applied"] = "return=representation"
-        whole, headers["ETag"] = await _representation(request, id)
+        whole, headers["ETag"] = await represented(request, id)
         return JSONBytes(whole, 201, headers)
     return JSONBytes(encode_reply(SavedReply(id, url_of(id))), 201, headers)
 
 
 def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None) -> Draft:
     wanted = parsed(SaveRequest, body)
+    return draft_in(catalogue, wanted.application, wanted, key, owner)
+
+
+def draft_in(
+    catalogue: Catalogue, application: Application, labels: Labels, key: str | None = None, owner: str | None = None
+) -> Draft:
+    """Record of an application in a body; its faults are named where they stand there."""
     try:
-        return draft_of(catalogue, wanted.application, wanted, key, owner)
+        return draft_of(catalogue, application, labels, key, owner)
     except InputError as error:
         if error.sentences[0][0] == ("ordering_code",):
             raise
@@ -135,9 +144,13 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
     response_model=SavedSelectionReply,
     responses=schemas.tagged(404, 409, 422, links=schemas.FROM_SELECTION),
 )
-async def read_selection(request: Request, id: schemas.Id) -> Response:
+async def read_selection(
+    request: Request,
+    id: schemas.Id,
+    revision: schemas.Revision = None,
+) -> Response:
     """Input and result as saved, and the differences under today's engine and catalogue, verdicts first."""
-    return conditional(request, *await _representation(request, id))
+    return conditional(request, *await represented(request, id, revision))
 
 
 @router.get(
@@ -195,11 +208,11 @@ async def rename_selection(request: Request, id: schemas.Id) -> Response:
     body = await read_body(request, JSON, MERGE_PATCH)
     names = (await calculate(request, body, parsed, Names, body)).model_dump(exclude_unset=True)
     await changeable(request, id)
-    version = await _matched_version(request, id)
+    version = await matched_version(request, id)
     if not await store.rename(id, names, version):
         raise not_found(id) if version is None else other_state()
     note(request, selection=id)
-    renamed, etag = await _representation(request, id)
+    renamed, etag = await represented(request, id)
     return JSONBytes(renamed, headers={"ETag": etag, "Cache-Control": "no-cache"})
 
 
@@ -219,14 +232,14 @@ async def delete_selection(request: Request, id: schemas.Id) -> Response:
     """
     store: Store = request.app.state.store
     await changeable(request, id)
-    version = await _matched_version(request, id)
+    version = await matched_version(request, id)
     if not await store.delete(id, version):
         raise not_found(id) if version is None else other_state()
     note(request, selection=id)
     return Response(status_code=204)
 
 
-async def _matched_version(request: Request, id: str) -> int | None:
+async def matched_version(request: Request, id: str) -> int | None:
     """Version of the state that `If-Match` names, None where it names none; Problem 412 where it names another.
 
     The write then asks for this version: a look beforehand holds for nobody who writes in between.
@@ -239,17 +252,17 @@ async def _matched_version(request: Request, id: str) -> int | None:
 
 
 def _tag_of(saved: SavedSelection, then: Catalogue | None, today: Catalogue) -> str:
-    return _tag(saved.id, saved.version, None if then is None else then.version, today)
+    return _tag(saved.id, (saved.version, saved.label), None if then is None else then.version, today)
 
 
-def _tag(id: str, version: int, then: str | None, today: Catalogue) -> str:
+def _tag(id: str, state: tuple[int, str], then: str | None, today: Catalogue) -> str:
     """Entity tag of a saved selection: everything that its representation is made of, by its versions."""
-    return etag_of(f"{id} {version} {then} {today.version} {ENGINE_VERSION}".encode())
+    return etag_of(f"{id} {' '.join(map(str, state))} {then} {today.version} {ENGINE_VERSION}".encode())
 
 
-async def _representation(request: Request, id: str) -> tuple[bytes, str]:
+async def represented(request: Request, id: str, label: str | None = None) -> tuple[bytes, str]:
     """Saved selection as `SavedSelectionReply`, application and result as the saved bytes, and its entity tag."""
-    return await found(request, id, partial(_represented, catalogue=request.app.state.catalogue))
+    return await found(request, id, partial(_represented, catalogue=request.app.state.catalogue), label)
 
 
 def _represented(reopened: Reopened, catalogue: Catalogue) -> tuple[bytes, str]:
@@ -261,6 +274,8 @@ def _represented(reopened: Reopened, catalogue: Catalogue) -> tuple[bytes, str]:
             "application": Raw(saved.application),
             "gear": then and then.by_designation.get(shown),
             "result": Raw(saved.result),
+            "label": saved.label,
+            "revisions": [replies.revision(each) for each in saved.revisions],
             "today": _today(reopened, catalogue),
         }
     )

@@ -71,7 +71,7 @@ async def show_selection(request: Request) -> Response:
     id = request.path_params["id"]
     if (seen := visible(id)) != id and ID.fullmatch(seen):
         return RedirectResponse(f"/selections/{seen}?{request.url.query}".removesuffix("?"), 308)
-    return await found(request, id, partial(_shown, request))
+    return await found(request, id, partial(_shown, request), request.query_params.get("revision"))
 
 
 def _shown(request: Request, reopened: Reopened) -> Response:
@@ -82,7 +82,8 @@ def _shown(request: Request, reopened: Reopened) -> Response:
 
 async def copy_selection(request: Request) -> Response:
     """The live page with a copy of what was saved, for a duty cycle that is too long for a link."""
-    return await found(request, request.path_params["id"], partial(_copied, request))
+    label = request.query_params.get("revision")
+    return await found(request, request.path_params["id"], partial(_copied, request), label)
 
 
 def _copied(request: Request, reopened: Reopened) -> Response:
