@@ -150,6 +150,7 @@ BODIES = (
     axes.AxisPatch,
     axes.ManyAxes,
     RevisionBlock,
+    selection_revisions.SelectionRevision,
 )
 """Models of request bodies that routes read themselves."""
 
