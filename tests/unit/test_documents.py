@@ -3,17 +3,20 @@
 from typing import Any
 
 import pytest
-from msgspec import Raw
+from msgspec import UNSET, Raw
 from pydantic import ValidationError
 
+from hpn.application import Application
 from hpn.application.input_fields import FIELDS
 from hpn.catalogue import Catalogue
 from hpn.documents import revision
 from hpn.documents.answers import Asked, AxisAnswer, answers
+from hpn.documents.answers import answer_of as selection_answer
 from hpn.documents.axis import MOST_AXES, MOST_PHASES, Axis, phases_of
 from hpn.documents.common import COMMON, OWN, OWN_PARTS, Common
 from hpn.documents.document import Document
 from hpn.documents.merge import resolve
+from hpn.engine.selection import Selection, select
 from tests.build import Json, cycle, phase, worked_example
 
 
@@ -183,3 +186,61 @@ def test_what_is_frozen_comes_back_byte_for_byte(catalogue: Catalogue) -> None:
 
     assert bytes(again.axes[0].application) == own
     assert again == frozen
+
+
+# --- Tolerances among the common values -------------------------------------------------------------------------------
+
+TEN = {"percent": 10.0}
+TWENTY = {"absolute": 0.02}
+
+
+def test_a_common_tolerance_is_inherited_replaced_whole_and_may_not_hold() -> None:
+    common = {"tolerances": {"torque_Nm": TEN, "pause_s": TWENTY}}
+    own = worked_example(tolerances={"pause_s": TEN})
+
+    found = resolve(own, common)
+    assert found.whole["tolerances"] == {"torque_Nm": TEN, "pause_s": TEN} and found.application is not None
+    assert found.inherited == {"tolerances.torque_Nm"}
+    assert resolve(own, common, ["tolerances.torque_Nm"]).whole["tolerances"] == {"pause_s": TEN}
+    assert resolve(worked_example(tolerances={"pause_s": None}), common).whole["tolerances"] == common["tolerances"]
+
+
+def test_an_axis_skips_a_common_tolerance_of_what_it_has_not() -> None:
+    absent = ("motion.mechanism.mass_kg", "phases.7.torque_Nm", "requirements.load_inertia_kgm2")
+    common = {"tolerances": dict.fromkeys(("torque_Nm", *absent), TEN)}
+    found = resolve(worked_example(), common)
+    assert found.application is not None and found.whole["tolerances"] == {"torque_Nm": TEN}
+    assert set(found.not_asked) == {f"tolerances.{name}" for name in absent}
+    own = resolve(worked_example(tolerances={"phases.7.torque_Nm": TEN}), {})
+    assert own.application is None and own.faults[0][2] == "tolerance_path"
+
+
+def test_a_common_tolerance_beyond_a_bound_leaves_the_axis_open() -> None:
+    found = resolve(worked_example(), {"tolerances": {"speed_rpm": {"percent": 200.0}}})
+    assert found.application is None and found.faults[0][0] == ("tolerances", "speed_rpm")
+
+
+@pytest.mark.parametrize("path", ["torque", "phases.x.torque_Nm", "requirements.utilisation", "duty_cycle.pause_s", ""])
+def test_common_tolerances_are_of_inputs(path: str) -> None:
+    with pytest.raises(ValidationError, match="is not a path of an input"):
+        Common.model_validate({"tolerances": {path: TEN}})
+    with pytest.raises(ValidationError, match="is no path of a common value"):
+        Axis.model_validate({"without": [f"tolerances.{path}"]})
+
+
+def test_an_axis_with_a_tolerance_has_the_worst_case_of_its_gear(catalogue: Catalogue) -> None:
+    own, common = worked_example(), {"tolerances": {"emergency_stop.torque_Nm": TEN}}
+    answer = answer_of(own, common, catalogue)
+    selection = select(Application.model_validate(own | common), catalogue)
+    worst = selection.candidates[0].worst
+    assert worst is not UNSET
+    assert (answer.holds, answer.worst_governing_check) == (worst.status == "suitable", worst.governing_check)
+    assert answer.worst_utilisation == pytest.approx(worst.utilisation, rel=1e-12)  # among others, and alone
+    assert answer.utilisation is not None and worst.utilisation is not None and worst.utilisation > answer.utilisation
+    assert answer_in_brief(selection, catalogue).worst_utilisation == worst.utilisation
+    without = answer_of(own, {}, catalogue)
+    assert (without.holds, without.worst_utilisation, without.worst_governing_check) == (None, None, None)
+
+
+def answer_in_brief(selection: Selection, catalogue: Catalogue) -> AxisAnswer:
+    return selection_answer(selection, selection.candidates[0], catalogue)

@@ -1,12 +1,14 @@
 """Every field of an application with its kind and bounds, read from the JSON Schema of the models."""
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 from hpn.application import Application
 from hpn.application.phase import Phase
+from hpn.application.tolerances import WITHOUT as NO_TOLERANCE
 
 Kind = Literal["number", "integer", "string", "boolean"]
 Json = dict[str, Any]
@@ -96,6 +98,21 @@ PHASE_FIGURES = tuple(name for name, field in PHASE_FIELDS.items() if field.kind
 
 FIELDS: Mapping[str, InputField] = {".".join(field.path): field for field in _of_application()}
 """Fields outside of the phases and the motion by their path: `requirements.life_h`."""
+
+ONE_PHASE = re.compile(r"phases\.(?:0|[1-9][0-9]{0,4})\.([A-Za-z_]+)")
+MOTION = re.compile(r"motion\.(?:mechanism|moves\.(?:0|[1-9][0-9]{0,4}))\.[A-Za-z_]+")
+
+
+def takes_tolerance(path: str) -> bool:
+    """True for a path of an input that takes a tolerance in some application."""
+    if match := ONE_PHASE.fullmatch(path):
+        return match[1] in PHASE_FIGURES
+    if path in NO_TOLERANCE or path.startswith("duty_cycle"):
+        return False
+    field = FIELDS.get("duty_cycle.pause_s" if path == "pause_s" else path)
+    is_number = field is not None and field.kind == "number" and not field.is_list
+    return path in PHASE_FIGURES or is_number or MOTION.fullmatch(path) is not None
+
 
 NUMBERS = tuple(field.path for field in FIELDS.values() if field.kind in ("number", "integer") and not field.is_list)
 """Path of every single number of an application but its motion: ("requirements", "motor", "peak_torque_Nm")."""

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Annotated, Any, Literal, NamedTuple
 
 import msgspec
-from msgspec import structs
+from msgspec import UNSET, structs
 from pydantic import Field
 
 from hpn import ENGINE_VERSION
@@ -93,6 +93,11 @@ class AxisAnswer(Reply, frozen=True):
     suitable: Annotated[int | None, Field(description="Number of suitable gears.")] = None
     runner_up: Annotated[str | None, Field(description="Designation of the second suitable gear.")] = None
     average_torque_Nm: Annotated[float | None, Field(description="Average torque T_av of the cycle.")] = None
+    holds: Annotated[
+        bool | None, Field(description="True: the gear passes over the whole tolerance; null without tolerances.")
+    ] = None
+    worst_utilisation: Annotated[float | None, Field(description="Its utilisation in the worst case.")] = None
+    worst_governing_check: Annotated[str | None, Field(description="Check that has it.")] = None
     not_asked: Annotated[
         tuple[str, ...], Field(description="Paths of common values that need what this axis lacks.")
     ] = ()
@@ -133,6 +138,7 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
     except InputError as error:
         return error
     figures = evaluation.case.figures
+    holds, worst, worst_check = judged.worst_of(gear)
     outcome, rows, verdict = judged.outcome(), evaluation.gears.rows, evaluation.verdict.item(index, gear)
     governing = evaluation.checks[evaluation.governing.item(index, gear)].code
     return AxisAnswer(
@@ -150,12 +156,16 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
         suitable=outcome.suitable,
         runner_up=rows[evaluation.order.item(index, 1)].designation if outcome.suitable > 1 else None,
         average_torque_Nm=_finite(evaluation.case.duty.average_torque_Nm.item(index)),
+        holds=holds,
+        worst_utilisation=worst,
+        worst_governing_check=worst_check,
     )
 
 
 def answer_of(selection: Selection, shown: Candidate, catalogue: Catalogue) -> AxisAnswer:
     """The same out of a whole selection, for the candidate that is shown first."""
     suitable = [each.designation for each in selection.candidates if each.status == "suitable"]
+    worst = None if shown.worst is UNSET else shown.worst
     return AxisAnswer(
         status=shown.status,
         selected=selection.selected,
@@ -171,6 +181,9 @@ def answer_of(selection: Selection, shown: Candidate, catalogue: Catalogue) -> A
         suitable=len(suitable),
         runner_up=suitable[1] if len(suitable) > 1 else None,
         average_torque_Nm=selection.duty.average_torque_Nm,
+        holds=None if worst is None else worst.status == "suitable",
+        worst_utilisation=None if worst is None else worst.utilisation,
+        worst_governing_check=None if worst is None else worst.governing_check,
         catalogue_version=catalogue.version,
     )
 

@@ -1,12 +1,14 @@
 """Axes of a document as they are sent, and the bounds of a document."""
 
+import re
 from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from hpn.documents.common import COMMON
+from hpn.application.tolerances import MOST_TOLERANCES
+from hpn.documents.common import COMMON, TOLERANCE, is_common
 from hpn.words.fields import WHOLE, Model
 from hpn.words.titles import Name, Note, Title
 
@@ -25,13 +27,14 @@ def _distinct(paths: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _common(path: str) -> str:
-    if path not in COMMON:
+    if not is_common(path):
         raise PydanticCustomError("not_common", "is no path of a common value, such as requirements.life_h")
     return path
 
 
-Path = Annotated[str, AfterValidator(_common), Field(json_schema_extra={"enum": list(COMMON)})]
-Without = Annotated[tuple[Path, ...], Field(max_length=len(COMMON)), AfterValidator(_distinct)]
+SCHEMAS: list[Any] = [{"enum": list(COMMON)}, {"pattern": f"^{re.escape(TOLERANCE)}[A-Za-z0-9_.]+$"}]
+Path = Annotated[str, AfterValidator(_common), Field(json_schema_extra={"anyOf": SCHEMAS})]
+Without = Annotated[tuple[Path, ...], Field(max_length=len(COMMON) + MOST_TOLERANCES), AfterValidator(_distinct)]
 Quantity = Annotated[int, Field(strict=True, ge=1, le=MOST_OF_A_KIND), WHOLE]
 
 

@@ -8,7 +8,8 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 from hpn.application import ApplicationArea, OutputLoad, RankBy, Requirements
-from hpn.application.input_fields import FIELDS
+from hpn.application.input_fields import FIELDS, takes_tolerance
+from hpn.application.tolerances import NO_INPUT, Tolerances
 from hpn.words.fields import Model, refused
 
 Json = dict[str, Any]
@@ -36,6 +37,9 @@ COMMON = tuple(
     path for path in FIELDS if path not in OWN and not any(path.startswith(f"{part}.") for part in OWN_PARTS)
 )
 """Paths of the fields that common values may have: every one but those that are the axis's own."""
+
+TOLERANCE = "tolerances."
+"""Beginning of the path of a common tolerance, which ends with that of its input."""
 
 EXCLUSIVE = (("requirements.position_error_arcmin", "requirements.position_error_mm"),)
 """Fields of which an application has one at most: an own value displaces the common one of the other."""
@@ -84,6 +88,20 @@ class Common(Model):
     output_load: CommonLoad | None = Field(None, description="Conditions of every axis that has a load.")
     application_area: ApplicationArea | None = Field(None, description="Area of use of the machine.")
     rank_by: RankBy | None = Field(None, description="Order of the suitable gears.")
+    tolerances: Tolerances | None = Field(
+        None,
+        description="How far inputs of every axis may lie from their values, by their paths as in an application; an "
+        "axis without that input skips it.",
+        examples=[{"torque_Nm": {"percent": 10.0}}],
+    )
+
+    @model_validator(mode="after")
+    def _has_tolerances_of_inputs(self) -> Self:
+        problem = PydanticCustomError("tolerance_path", NO_INPUT)
+        wrong = [path for path in self.tolerances or () if not takes_tolerance(path)]
+        if wrong:
+            raise refused(self, *((("tolerances", path), problem) for path in wrong))
+        return self
 
     @model_validator(mode="after")
     def _has_one_of_each_pair(self) -> Self:
@@ -105,6 +123,11 @@ class Common(Model):
     def sent(self) -> Json:
         """The values that are given as JSON."""
         return self.model_dump(mode="json", exclude_none=True)
+
+
+def is_common(path: str) -> bool:
+    """True for the path of a value that common values may have."""
+    return path in COMMON or (path.startswith(TOLERANCE) and takes_tolerance(path.removeprefix(TOLERANCE)))
 
 
 def flat(common: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

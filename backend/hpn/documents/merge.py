@@ -14,13 +14,16 @@ from hpn.words.wording import Sentence
 
 Json = dict[str, Any]
 
-PARTS = ("requirements", "output_load")
+PARTS = ("requirements", "output_load", "tolerances")
 """Parts that are merged field by field; every other value is own or inherited as a whole."""
 
 LOADING = ("radial_N", "axial_N", "from_motion", "drive")
 """Fields of `output_load` by which an axis has a load."""
 
-LACKS = frozenset(("inertia_of_load", "no_rest", "error_radius"))
+OF_NOTHING = ("tolerance_of_nothing", "tolerance_of_motion", "tolerance_path")
+"""Codes of faults of a tolerance of what an application does not have."""
+
+LACKS = frozenset(("inertia_of_load", "no_rest", "error_radius", *OF_NOTHING))
 """Codes of faults by which an application lacks what one of its values needs: a common value is then not asked."""
 
 
@@ -74,11 +77,11 @@ def merged(own: Mapping[str, Any], common: Mapping[str, Any], left_out: Collecti
     whole = {name: _given(value) if name in PARTS else value for name, value in own.items() if value is not None}
     held = {path: value for path, value in flat(common) if path not in left_out and _holds(path, whole, own)}
     for path, value in held.items():
-        part, _, name = path.rpartition(".")
-        if part:
+        part, _, name = path.partition(".")
+        if name:
             whole[part] = {**whole.get(part, {}), name: value}
         else:
-            whole[name] = value
+            whole[part] = value
     return whole, frozenset(held)
 
 
@@ -89,9 +92,9 @@ def _given(part: Any) -> Any:
 
 def _holds(path: str, whole: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
     """True for a common value that an axis with these own ones takes."""
-    part, _, name = path.rpartition(".")
-    if not part:
-        return name not in whole
+    part, _, name = path.partition(".")
+    if not name:
+        return part not in whole
     fields = whole.get(part, {})
     if not isinstance(fields, Mapping):  # the models say that this is no object
         return False

@@ -162,12 +162,13 @@ class Judged:
         best = evaluation.order.item(index, 0)
         check = evaluation.checks[evaluation.governing.item(index, best)]
         used = evaluation.utilisation.item(index, best)
-        worst = self._worst(best) if self.application.tolerances else ()
+        worst = self.worst_of(best) if self.application.tolerances else ()
         return Outcome(evaluation.gears.rows[best].designation, check.code, used, suitable, *worst)
 
-    def _worst(self, gear: int) -> tuple[bool, float | None, str | None]:
-        """True where a gear holds over the whole tolerance, and its worst case."""
-        assert self.evaluation.worst is not None
+    def worst_of(self, gear: int) -> tuple[bool | None, float | None, str | None]:
+        """True where a gear holds over the whole tolerance, and its worst case; None without tolerances."""
+        if self.evaluation.worst is None or not self.application.tolerances:
+            return None, None, None
         judged, index = self.evaluation.worst.evaluation, self.index
         used, verdict = judged.utilisation.item(index, gear), judged.verdict.item(index, gear)
         code = None if verdict == UNRATED else judged.checks[judged.governing.item(index, gear)].code

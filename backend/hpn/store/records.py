@@ -19,7 +19,8 @@ DocumentKind = Literal["selection", "machine"]
 ANSWER = (
     *("status", "selected", "designation", "governing_check", "utilisation", "life_L10_h", "shortest_life_h"),
     *("shortest_life_of", "natural_frequency_Hz", "motor_torque_limit_Nm", "weight_kg", "suitable", "runner_up"),
-    *("average_torque_Nm", "not_asked", "unknown", "faults", "engine_version", "catalogue_version"),
+    *("average_torque_Nm", "holds", "worst_utilisation", "worst_governing_check", "not_asked", "unknown", "faults"),
+    *("engine_version", "catalogue_version"),
 )
 """Columns of an axis's answer."""
 

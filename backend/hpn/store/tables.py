@@ -3,6 +3,7 @@
 from datetime import UTC, datetime
 
 from sqlalchemy import (
+    Boolean,
     Column,
     DateTime,
     Double,
@@ -114,6 +115,9 @@ axes = Table(
     Column("suitable", Integer),
     Column("runner_up", Text),
     Column("average_torque_Nm", Double),
+    Column("holds", Boolean),
+    Column("worst_utilisation", Double),
+    Column("worst_governing_check", Text),
     Column("not_asked", Text, nullable=False, server_default="[]"),
     Column("unknown", Text, nullable=False, server_default="[]"),  # figures of which an earlier version knew nothing
     Column("faults", Text, nullable=False, server_default="[]"),

@@ -25,6 +25,9 @@ ANSWER = {
     "runner_up": Named(N_("Second suitable gear")),
     "weight_kg": GEAR["weight_kg"],
     "average_torque_Nm": DUTY["average_torque_Nm"],
+    "holds": Named(N_("Holds over the whole tolerance")),
+    "worst_utilisation": Named(N_("Utilisation in the worst case")),
+    "worst_governing_check": Named(N_("Governing check in the worst case")),
 }
 """Fields of an answer that are no figures of a candidate."""
 
@@ -77,7 +80,9 @@ def answer_lines(each: DifferentAnswer, reader: Reader) -> tuple[Line, Line]:
 
 def _answer_line(name: str, named: Named, value: Any, reader: Reader) -> Line:
     code = f"candidate.{name}"
-    if name == "governing_check":
+    if isinstance(value, bool):
+        return Line(code, named, str(value), kind="computed")
+    if name in ("governing_check", "worst_governing_check"):
         return Line(code, named, check_of(value, reader) or None, kind="computed")
     if name == "status":
         return Line(code, named, STATUS.get(value, value), kind="computed")
@@ -86,7 +91,7 @@ def _answer_line(name: str, named: Named, value: Any, reader: Reader) -> Line:
 
 def shown(line: Line, reader: Reader) -> str:
     """A value as it is read, with its unit; a dash for none, and a utilisation in percent."""
-    if line.code == "candidate.utilisation" and isinstance(line.value, float | int):
+    if line.code in ("candidate.utilisation", "candidate.worst_utilisation") and isinstance(line.value, float | int):
         return reader.percent(line.value)
     return line.text(reader) if line.value is not None else NOTHING
 
