@@ -101,6 +101,10 @@ def test_some_fields_alone_are_read(client: TestClient) -> None:
     whole = read(client, place)
     assert client.get(f"{place}?fields=axes, order").json() == {"axes": whole["axes"], "order": whole["order"]}
     assert client.get(f"{place}?fields=title,nothing").status_code == 422
+    changed = client.patch(f"{place}?fields=common,counts", json={"common": {"rank_by": "life"}})
+    assert changed.json() == {"common": COMMON | {"rank_by": "life"}, "counts": whole["counts"]}
+    assert client.patch(f"{place}?fields=nothing", json={"title": "other"}).status_code == 422
+    assert read(client, place)["title"] == whole["title"]
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,9 @@
 """Machines over REST: create, list, read, change, delete."""
 
+from collections.abc import Collection
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 from urllib.parse import urlencode
 
 import msgspec
@@ -122,6 +123,19 @@ def _moment(time: datetime | None, name: str) -> datetime | None:
         raise Problem(422, f"{name} {detail}", [((name,), detail)]) from None
 
 
+Fields = Annotated[
+    str | None,
+    Query(max_length=1000, description="Names of the fields wanted, with commas; those of an axis as `axes.name`."),
+]
+
+
+class Wanted(NamedTuple):
+    """Names of the fields of a machine that are wanted, and of those of its axes."""
+
+    names: Collection[str]
+    of_axes: Collection[str]
+
+
 Since = Annotated[datetime | None, Query(description="Only those of this moment or later.")]
 
 
@@ -178,28 +192,35 @@ async def list_machines(
 async def read_machine(
     request: Request,
     id: schemas.Id,
-    fields: Annotated[
-        str | None,
-        Query(max_length=1000, description="Names of the fields wanted, with commas; those of an axis as `axes.name`."),
-    ] = None,
+    fields: Fields = None,
 ) -> Response:
     """The machine with its working copy. Its ETag stands for title block, common values, order and set of axes."""
-    machine = await found(request, id)
-    body = await compute(request, "pages", _whole, machine, fields)
+    return await _reply(request, id, await _wanted(request, id, fields))
+
+
+async def _reply(request: Request, id: str, wanted: Wanted | None) -> Response:
+    """A machine, or some fields of it; where these are none of its axes, no axis is read."""
+    machine = await found(request, id, None if wanted is None or wanted.of_axes else [])
+    body = await compute(request, "pages", _whole, machine, wanted)
     return JSONBytes(body, headers={"ETag": tag_of(machine), "Cache-Control": "no-cache"})
 
 
-def _whole(machine: Machine, fields: str | None) -> bytes:
-    """JSON of a machine, or of some fields; Problem 422 for a name that it hasn't."""
+def _whole(machine: Machine, wanted: Wanted | None) -> bytes:
+    return encode(replies.machine(machine) if wanted is None else replies.parts(machine, *wanted))
+
+
+async def _wanted(request: Request, id: str, fields: str | None) -> Wanted | None:
+    """Fields of a machine by their names; Problem 404 where there is none, 422 for a name that it hasn't."""
     if fields is None:
-        return encode(replies.machine(machine))
+        return None
     names = {name.strip() for name in fields.split(",")}
     of_axes = {name.removeprefix("axes.") for name in names if name.startswith("axes.")}
     unknown = {name for name in names if not name.startswith("axes.")} - set(replies.MachineReply.__struct_fields__)
     if unknown := unknown | (of_axes - replies.PARTS.keys()):
+        await found(request, id, [])
         detail = f"names {min(unknown)!r:.80}, which is no field of a machine"
         raise Problem(422, f"fields {detail}", [(("fields",), detail)])
-    return encode(replies.parts(machine, names, replies.PARTS if "axes" in names else of_axes))
+    return Wanted(names, replies.PARTS if "axes" in names else of_axes)
 
 
 @router.patch(
@@ -212,12 +233,13 @@ def _whole(machine: Machine, fields: str | None) -> bytes:
     response_model=replies.MachineReply,
     responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422), headers=schemas.headers("ETag")),
 )
-async def change_machine(request: Request, id: schemas.Id) -> Response:
+async def change_machine(request: Request, id: schemas.Id, fields: Fields = None) -> Response:
     """Merge patch (RFC 7396) of title block and common values; `order` has the numbers of all axes.
 
     Every axis is answered anew where common values change; one that can't be answered any more is open, and never
-    keeps the change from being made.
+    keeps the change from being made. The answer is the machine, or the fields that are asked for.
     """
+    wanted = await _wanted(request, id, fields)
     body = await read_body(request, JSON, MERGE_PATCH, maximum_bytes=MOST_BYTES)
     patch = await compute(request, "pages", parsed, MachinePatch, body, require_machine)
     catalogue: Catalogue = request.app.state.catalogue
@@ -229,7 +251,7 @@ async def change_machine(request: Request, id: schemas.Id) -> Response:
 
     needs_axes = "common" in patch.model_fields_set
     await apply(request, id, make, None if needs_axes else [])
-    return await read_machine(request, id)
+    return await _reply(request, id, wanted)
 
 
 def _change(machine: Machine, patch: MachinePatch, catalogue: Catalogue, by: str | None) -> Change:
