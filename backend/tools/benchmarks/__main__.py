@@ -16,13 +16,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from tools.benchmarks import batches, edits, fleets, replies, starts
+from tools.benchmarks import batches, edits, fleets, machines, replies, starts
 from tools.benchmarks.applications import EVERY, select_body
 from tools.benchmarks.turns import ratios
 from tools.benchmarks.variants import HERE, Checkout, Server, plain_service, product
 
 RESULTS = HERE / "bench-results.json"
-MEASURES = ("first_starts", "commands", "idle", "replies", "edits", "batches", "savings", "fleets")
+MEASURES = ("first_starts", "commands", "idle", "replies", "edits", "batches", "savings", "machines", "fleets")
 IDLE_SECONDS = 2
 
 
@@ -69,6 +69,7 @@ def _measured(
         "edits": edits.measure,
         "batches": batches.measure,
         "savings": lambda servers: replies.measure(servers, "/api/v1/selections"),
+        "machines": machines.measure,
     }
     if of_servers.keys().isdisjoint(wanted):
         return

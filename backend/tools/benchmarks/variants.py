@@ -63,10 +63,10 @@ class Server:
         """Most memory that it has held."""
         return self._status("VmHWM")
 
-    def ask(self, path: str, content: bytes | None = None) -> bytes:
+    def ask(self, path: str, content: bytes | None = None, method: str = "") -> bytes:
         """One answer on a connection of its own; raises RuntimeError where it is no success."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
-        connection.request("POST" if content else "GET", path, content, JSON if content else {})
+        connection.request(method or ("POST" if content else "GET"), path, content, JSON if content else {})
         response = connection.getresponse()
         answer = response.read()
         connection.close()
