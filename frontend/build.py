@@ -54,7 +54,7 @@ OF_FORM = ("form", "replacing", "undo", "messages", "requests", "rows", "answer"
 SCRIPTS = (*OF_FORM, "sections", "connection", "insight", "plots", "tools")
 """Modules of the form's page."""
 
-ALONE = ("docs.js", "favicon.svg", "fleet-report.js", "plots.js")
+ALONE = ("docs.js", "favicon.svg", "fleet-report.js", "machine.js", "plots.js")
 """Files that a page asks for by themselves; a fleet’s report holds its script."""
 
 NOTO = FRONTEND / "node_modules/@expo-google-fonts"

@@ -14,7 +14,6 @@ from hpn.application.faults import NO_FIELD, Fault
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import Asked, answers
 from hpn.documents.axis import MOST_AXES, MOST_BYTES, READ_ONLY, Axis
-from hpn.documents.gears import Placed, gears_of
 from hpn.documents.merge import resolve
 from hpn.engine.selection import Selection, select
 from hpn.engine.selection import encode as encode_selection
@@ -23,13 +22,14 @@ from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
 from hpn.web.api.machines import ADDRESS, require_machine
 from hpn.web.api.replies import JSONBytes, encode
-from hpn.web.columns import columns_of, common_of, draft_of, drafts_of, own_of, resolved, without_of
+from hpn.web.columns import columns_of, common_of, draft_of, drafts_of, resolved
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
 from hpn.web.door.conditions import require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.edits import FIELDS, Effect, after, drafted, effect_of, named
 from hpn.web.form.link_writer import to_link
 from hpn.web.machines import (
     apply,
@@ -41,7 +41,6 @@ from hpn.web.machines import (
     guarded,
     no_axis,
     once_of,
-    patched,
     require_document,
     tag_of,
 )
@@ -312,11 +311,11 @@ async def change_axes(
     if not dry and "if-match" not in request.headers:
         raise Problem(428, "send the machine’s ETag as If-Match")
     catalogue: Catalogue = request.app.state.catalogue
-    effects: list[replies.EffectReply] = []
+    effects: list[Effect] = []
 
     def make(machine: Machine) -> Change:
         require_document(request, machine)
-        axes = _named(machine, sent.numbers)
+        axes = named(machine, sent.numbers)
         drafts = drafted([(axis, after(axis, sent.patch)) for axis in axes], common_of(machine), catalogue)
         changed = [(axis.number, axis.version, draft) for axis, draft in zip(axes, drafts, strict=True)]
         effects.append(effect_of(machine, {number: draft for number, _, draft in changed}, catalogue))
@@ -327,7 +326,7 @@ async def change_axes(
     else:
         await apply(request, id, make)
     tag = tag_of(await editable(request, id, []))
-    return JSONBytes(encode(effects[-1]), headers={"ETag": tag})
+    return JSONBytes(encode(replies.EffectReply(*effects[-1])), headers={"ETag": tag})
 
 
 def _require_fields(patch: Mapping[str, Any], *place: str) -> None:
@@ -335,56 +334,3 @@ def _require_fields(patch: Mapping[str, Any], *place: str) -> None:
     for name in patch:
         if name not in {*FIELDS, *READ_ONLY, "number"}:
             raise Problem(422, f"{name!r:.80} is not a field of an axis", [((*place, name), NO_FIELD)])
-
-
-def _named(machine: Machine, numbers: tuple[int, ...] | Literal["all"]) -> list[SavedAxis]:
-    by_number = {axis.number: axis for axis in machine.items}
-    wanted = list(by_number) if numbers == "all" else list(dict.fromkeys(numbers))
-    if missing := [number for number in wanted if number not in by_number]:
-        detail = f"names {missing[0]}, which is no axis of this machine"
-        raise Problem(422, f"numbers {detail}", [(("numbers",), detail)])
-    return [by_number[number] for number in wanted]
-
-
-# --- Own values -------------------------------------------------------------------------------------------------------
-
-FIELDS = ("name", "quantity", "note", "ordering_code", "without", "application")
-"""Own values of an axis."""
-
-
-def own_values(axis: SavedAxis) -> dict[str, Any]:
-    """Own values of an axis as they are."""
-    same = {name: getattr(axis, name) for name in ("name", "quantity", "note", "ordering_code")}
-    return same | {"without": without_of(axis), "application": own_of(axis)}
-
-
-def after(axis: SavedAxis, patch: Mapping[str, Any]) -> dict[str, Any]:
-    """Own values of an axis after a merge patch; ValidationError where one that it changes is wrong."""
-    now = own_values(axis)
-    changed = {name: patched(now[name], value) for name, value in patch.items() if name in FIELDS}
-    checked = Axis.model_validate({name: value for name, value in changed.items() if value is not None})
-    return now | {name: getattr(checked, name) for name in changed}
-
-
-def drafted(
-    axes: list[tuple[SavedAxis, dict[str, Any]]], common: Mapping[str, Any], catalogue: Catalogue
-) -> list[AxisDraft]:
-    """Axes with other own values, all answered together."""
-    asked = [Asked(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
-    found = answers(asked, catalogue)
-    return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, found, strict=True)]
-
-
-def effect_of(machine: Machine, drafts: Mapping[int, AxisDraft], catalogue: Catalogue) -> replies.EffectReply:
-    """Effect of a change on the gears of a machine."""
-    now = {axis.number: axis for axis in machine.items}
-    other = [n for n, draft in drafts.items() if draft.answer["designation"] != now[n].answer["designation"]]
-    without = [n for n, draft in drafts.items() if draft.answer["selected"] is None and draft.ordering_code is None]
-    before = gears_of(map(_placed, now.items()), catalogue).weight_kg
-    then = gears_of(map(_placed, {**now, **drafts}.items()), catalogue).weight_kg
-    return replies.EffectReply(len(drafts), tuple(other), tuple(without), before, then)
-
-
-def _placed(item: tuple[int, AxisDraft]) -> Placed:
-    number, axis = item
-    return Placed(number, axis.quantity, axis.ordering_code, axis.answer["selected"])

@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 from hpn.documents.axis import MOST_AXES
 from hpn.documents.differences import DocumentDifferences, differences, today
 from hpn.documents.gears import GearOrder, Placed, gears_of
-from hpn.documents.kinds import MachineKinds, Sought, kinds_of
+from hpn.documents.kinds import MachineKinds
 from hpn.documents.revision import NOW, TODAY, Frozen, RevisionBlock, decode, label_key
 from hpn.store import Machine, RevisionLine
 from hpn.web.api import machine_replies as replies
@@ -18,12 +18,13 @@ from hpn.web.api import schemas
 from hpn.web.api.freezing import freeze, revision
 from hpn.web.api.machines import ADDRESS
 from hpn.web.api.replies import JSONBytes, RevisionReply, encode
-from hpn.web.columns import common_of, frozen_of, resolved
+from hpn.web.columns import frozen_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.edits import kinds_in
 from hpn.web.machines import (
     found,
     made_before,
@@ -218,11 +219,4 @@ async def read_kinds(
 
 
 def _kinds(machine: Machine, catalogue: Catalogue, most: int | None) -> bytes:
-    common = common_of(machine)
-    pairs = ((axis, resolved(axis, common).application) for axis in machine.items)
-    sought = [
-        Sought(axis.number, axis.quantity, application, axis.answer["designation"])
-        for axis, application in pairs
-        if application is not None and axis.answer["status"] != "open"
-    ]
-    return encode(kinds_of(sought, catalogue, most=most))
+    return encode(kinds_in(machine, catalogue, most))

@@ -8,24 +8,15 @@ from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
 from hpn.account.readings import Life, life_of
-from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.documents.axis import Json
 from hpn.documents.common import COMMON, flat
 from hpn.documents.gears import GearOrder, Placed, gears_of
 from hpn.engine.checks import allowed
-from hpn.engine.remedy import condition_of
-from hpn.engine.selection import select
-from hpn.engine.tried import needed_of
-from hpn.fleet.faults import Reason
 from hpn.store import Machine, SavedAxis
-from hpn.web.columns import answer_in, common_of, own_of, resolved, without_of
-from hpn.web.door.access import MAXIMUM_QUERY_BYTES
-from hpn.web.form.labels import query_of
-from hpn.web.form.link_writer import to_link
+from hpn.web.columns import common_of, own_of, without_of
 from hpn.web.form.symbols import BY_PATH, Symbol
-from hpn.words.titles import faults_of
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_
 
 ADDRESS = "/machines"
 ROWS_ON_PAGE = 100
@@ -316,6 +307,16 @@ class MachineView:
         """True for an axis that was changed after the latest revision."""
         return is_changed(row, self.since)
 
+    @cached_property
+    def names(self) -> Mapping[int, str]:
+        """Names of its axes by their numbers."""
+        return {row.axis.number: row.name for row in self.all}
+
+    @cached_property
+    def lacking(self) -> frozenset[int]:
+        """Numbers of the axes without a suitable gear."""
+        return frozenset(row.axis.number for row in self.all if row.status != "suitable")
+
     # --- Addresses ----------------------------------------------------------------------------------------------------
 
     def choose(self, name: str, value: str) -> str:
@@ -330,6 +331,22 @@ class MachineView:
         """Address of the axes in the order of a column."""
         turned = f"-{key}" if self.chosen.sort == key else key
         return self.chosen.address(self.path, sort=turned, part=1) + "#axes-heading"
+
+    @property
+    def opened(self) -> str:
+        """Address of the same axes with the form of the common values."""
+        address = self.chosen.address(self.path)
+        return f"{address}{'&' if '?' in address else '?'}edit=common"
+
+    @property
+    def closed(self) -> str:
+        """Address of the same axes without it."""
+        return self.chosen.address(self.path)
+
+    @property
+    def changed(self) -> str:
+        """Address that takes changes and shows the same axes."""
+        return self.chosen.address(f"{self.path}/change")
 
     def order_of(self, key: str) -> str:
         """Order of the axes by a column; blank where there is none."""
@@ -348,52 +365,3 @@ class MachineView:
 def placed(axis: SavedAxis) -> Placed:
     """An axis by what counts for the order of gears."""
     return Placed(axis.number, axis.quantity, axis.ordering_code, axis.answer["selected"])
-
-
-# --- Of single axes ---------------------------------------------------------------------------------------------------
-
-MOST_REMEDIES = 5
-"""Axes without a suitable gear whose remedies a page works out; the others say theirs once they are opened."""
-
-
-class Opened(NamedTuple):
-    """What the row of an axis says beyond its columns: its link, why it is open, and what would make its gear fit."""
-
-    link: str = ""
-    reasons: tuple[Reason, ...] = ()
-    remedies: tuple[Sentence, ...] = ()
-
-
-def opened(view: MachineView, rows: Iterable[Row]) -> dict[int, Opened]:
-    """The same of some axes, by their numbers."""
-    found: dict[int, Opened] = {}
-    worked_out = 0
-    for row in rows:
-        application, remedies = resolved(row.axis, view.common).application, tuple[Sentence, ...]()
-        if application and row.status == "unsuitable" and worked_out < MOST_REMEDIES:
-            worked_out, remedies = worked_out + 1, _remedies(row, application, view.catalogue)
-        reasons = _reasons(row) if row.status == "open" else ()
-        found[row.axis.number] = Opened(link_of(row, application) if application else "", reasons, remedies)
-    return found
-
-
-def _reasons(row: Row) -> tuple[Reason, ...]:
-    from hpn.web.pages.fleet_result import reasons  # needs Arrow
-
-    return tuple(reasons(answer_in(row.answer).faults))
-
-
-def link_of(row: Row, application: Application) -> str:
-    """Address of an axis in the workbench; blank where it is too long for one."""
-    titled = "" if any(faults_of(row.name)) else query_of({"title": row.name})
-    link = to_link(application) + titled
-    return link if len(link) <= MAXIMUM_QUERY_BYTES else ""
-
-
-def _remedies(row: Row, application: Application, catalogue: Catalogue) -> tuple[Sentence, ...]:
-    """Changes that each alone make the nearest gear fit."""
-    try:
-        candidate = select(application, catalogue).candidate(row.gear or "")
-    except InputError:
-        return ()
-    return tuple(map(condition_of, needed_of(candidate, application, catalogue))) if candidate else ()

@@ -18,16 +18,19 @@ from hpn import ENGINE_VERSION
 from hpn.documents.revision import SAVED, is_label
 from hpn.store import Machine, RevisionDraft, StoreUnavailableError
 from hpn.web.columns import revision_of
-from hpn.web.door.access import admit
+from hpn.web.door.access import ADMIN, admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
+from hpn.web.form.common import BY_SYMBOL, FIRST
 from hpn.web.form.labels import FIELDS, TITLE_BLOCK
 from hpn.web.machines import require_seen
 from hpn.web.pages.explanations import reads_pages
-from hpn.web.pages.machine_view import ADDRESS, SHOWN, Chosen, MachineView, opened
+from hpn.web.pages.machine_editing import OF_MANY, Editing, opened_common
+from hpn.web.pages.machine_rows import opened
+from hpn.web.pages.machine_view import ADDRESS, SHOWN, Chosen, MachineView
 from hpn.web.pages.rendering import or_reason, page, reason
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.words.reader import Reader
@@ -74,34 +77,45 @@ EMPTY = TitleBlock(dict.fromkeys(TITLE_BLOCK, ""))
 
 @or_reason(REASON)
 async def show(request: Request) -> Response:
-    """A sized fleet: counts, and its axes as the address filters and sorts them."""
-    return await _shown(request, await _found(request), 200, EMPTY)
+    """A machine: counts, and its axes as the address filters and sorts them; `edit=common` opens its common values."""
+    saved = await _found(request)
+    editing = opened_common(saved) if request.query_params.get("edit") == "common" else Editing()
+    return await shown(request, saved, 200, EMPTY, editing)
 
 
-async def _shown(request: Request, saved: Machine, status: int, form: TitleBlock) -> Response:
+async def shown(request: Request, saved: Machine, status: int, form: TitleBlock, editing: Editing) -> Response:
+    """The page of a machine with the form that saves it, and with what is changed of it."""
     latest = await request.app.state.store.revisions(saved.id) if saved.revisions else []
     since = latest[0].created if latest else None
     view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params), since)
     today = await _today(request, saved)
-    return await compute(request, "pages", _page, request, view, status, form, today)
+    values = {"form": form, "today": today, "editing": editing, "may_change": may_change(request, saved)}
+    return await compute(request, "pages", _page, request, view, status, values)
 
 
-def _page(request: Request, view: MachineView, status: int, form: TitleBlock, today: list[Any] | None) -> Response:
-    shown = [*view.rows, *([view.top] if view.top else [])]
+def may_change(request: Request, saved: Machine) -> bool:
+    """True for a reader whose key may change a machine; on a service without keys for everybody."""
+    return not request.app.state.gate.has_keys or request.state.api_key in (ADMIN, saved.owner or ADMIN)
+
+
+def _page(request: Request, view: MachineView, status: int, values: Mapping[str, Any]) -> Response:
+    rows = [*view.rows, *([view.top] if view.top else [])]
     return page(
         request,
         "machine.html",
         status,
         saved=view.machine,
         view=view,
-        opened=opened(view, shown),
-        form=form,
+        opened=opened(view, rows),
         shown=SHOWN,
-        today=today,
         engine_version=ENGINE_VERSION,
         catalogue_version=request.app.state.catalogue.version,
         most_changes=CHANGES_ON_PAGE,
         suffixes=tuple(MEDIA_TYPES),
+        first_fields=FIRST,
+        common_fields=tuple(BY_SYMBOL),
+        many_fields=OF_MANY,
+        **values,
     )
 
 
@@ -169,7 +183,7 @@ async def save(request: Request) -> Response:
     form = TitleBlock({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
     saved = await _found(request)
     if not form.is_sound:
-        return await _shown(request, saved, 422, form)
+        return await shown(request, saved, 422, form, Editing())
     names = {FIELDS[name]: text or None for name, text in form.labels.items()}
     first = await compute(request, "pages", _first_revision, saved, names)
     if not await request.app.state.store.save_machine(saved.id, names, request.state.api_key, first):

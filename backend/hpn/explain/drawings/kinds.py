@@ -1,0 +1,54 @@
+"""The drawing of fewest kinds: mass of all gears over the number of kinds."""
+
+from collections.abc import Sequence
+from xml.etree.ElementTree import Element
+
+from hpn.explain.drawings.svg import Point, add, canvas, path, text
+from hpn.words.reader import DEFAULT, Reader
+from hpn.words.wording import N_
+
+WIDTH, HEIGHT = 296.0, 180.0
+LEFT, RIGHT, TOP, BOTTOM = 12.0, 18.0, 42.0, 36.0
+MOST_STEPS, APART = 8, 46.0
+"""Numbers on the axis, and room that the mass beside a point needs."""
+
+STEEP = 3.0
+"""Masses above so many times the least are left out of the scale, and said above it."""
+
+
+def kinds_curve(steps: Sequence[tuple[int, float]], reader: Reader = DEFAULT) -> Element | None:
+    """Curve of mass in kg over numbers of kinds, the present one last; None with fewer than two."""
+    shown = sorted(steps)[-MOST_STEPS:]
+    if len(shown) < 2:
+        return None
+    drawing = canvas("kinds", WIDTH, HEIGHT)
+    least = min(mass for _, mass in shown)
+    inside = [(count, mass) for count, mass in shown if mass <= STEEP * least]
+    low, high = least, max(max(mass for _, mass in inside), 1.01 * least)
+    first, last = shown[0][0], shown[-1][0]
+
+    def place(count: int, mass: float) -> Point:
+        across = LEFT + (WIDTH - LEFT - RIGHT) * (count - first) / (last - first)
+        return across, HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * min((mass - low) / (high - low), 1.0)
+
+    floor = HEIGHT - BOTTOM + 8
+    add(drawing, "path", "axis", d=path([(LEFT - 8, floor), (WIDTH - RIGHT + 8, floor)]))
+    points = [place(*step) for step in shown]
+    beyond = len(shown) - len(inside)
+    if beyond:
+        add(drawing, "path", "line beyond", d=path([(points[beyond - 1][0], TOP - 6), points[beyond]]))
+    add(drawing, "path", "line", d=path(points[beyond:]))
+    written_at = WIDTH + APART
+    for (count, mass), (x, y) in reversed(list(zip(shown, points, strict=True))):
+        is_inside, is_now = mass <= STEEP * least, count == last
+        text(drawing, "name", (x, HEIGHT - 14), str(count), "middle")
+        if is_inside:
+            add(drawing, "circle", "disc now" if is_now else "disc", cx=x, cy=y, r=4.0)
+        if is_now or written_at - x >= APART:
+            label = reader.exact(round(mass, 1))
+            said, height = (label, y) if is_inside else (f"↑ {label}", TOP)
+            text(drawing, "phase", (WIDTH if is_now else x + 4, height - 9), said, "end" if is_now else "start")
+            written_at = WIDTH - APART + 4 if is_now else x + 4
+    text(drawing, "title", (0, 12), reader.unit("kg"))
+    text(drawing, "title", (WIDTH, HEIGHT - 1), reader.text(N_("kinds")), "end")
+    return drawing

@@ -1,0 +1,240 @@
+"""Changes of a machine's axes and common values as REST and the pages make them, and their effect on its gears."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Literal, NamedTuple
+
+import msgspec
+
+from hpn.catalogue import Catalogue
+from hpn.documents.answers import Asked, answers
+from hpn.documents.axis import Axis
+from hpn.documents.gears import Placed, gears_of
+from hpn.documents.kinds import MachineKinds, Sought, kinds_of
+from hpn.documents.merge import resolve
+from hpn.store import AxisDraft, Change, Machine, SavedAxis
+from hpn.web.columns import columns_of, common_of, draft_of, json_of, own_of, resolved, without_of
+from hpn.web.door.problems import Problem
+from hpn.web.machines import answered, patched
+
+Json = dict[str, Any]
+
+
+class Effect(NamedTuple):
+    """Effect of a change: number of axes that it is about, those with another gear and without one, and masses."""
+
+    axes: int
+    other_gear: tuple[int, ...]
+    without_gear: tuple[int, ...]
+    weight_before_kg: float | None
+    weight_kg: float | None
+
+
+def named(machine: Machine, numbers: Sequence[int] | Literal["all"]) -> list[SavedAxis]:
+    """Axes of some numbers; Problem 422 for one that the machine hasn't."""
+    by_number = {axis.number: axis for axis in machine.items}
+    wanted = list(by_number) if numbers == "all" else list(dict.fromkeys(numbers))
+    if missing := [number for number in wanted if number not in by_number]:
+        detail = f"names {missing[0]}, which is no axis of this machine"
+        raise Problem(422, f"numbers {detail}", [(("numbers",), detail)])
+    return [by_number[number] for number in wanted]
+
+
+FIELDS = ("name", "quantity", "note", "ordering_code", "without", "application")
+"""Own values of an axis."""
+
+
+def own_values(axis: SavedAxis) -> dict[str, Any]:
+    """Own values of an axis as they are."""
+    same = {name: getattr(axis, name) for name in ("name", "quantity", "note", "ordering_code")}
+    return same | {"without": without_of(axis), "application": own_of(axis)}
+
+
+def after(axis: SavedAxis, patch: Mapping[str, Any]) -> dict[str, Any]:
+    """Own values of an axis after a merge patch; ValidationError where one that it changes is wrong."""
+    now = own_values(axis)
+    changed = {name: patched(now[name], value) for name, value in patch.items() if name in FIELDS}
+    checked = Axis.model_validate({name: value for name, value in changed.items() if value is not None})
+    return now | {name: getattr(checked, name) for name in changed}
+
+
+def drafted(
+    axes: list[tuple[SavedAxis, dict[str, Any]]], common: Mapping[str, Any], catalogue: Catalogue
+) -> list[AxisDraft]:
+    """Axes with other own values, all answered together."""
+    asked = [Asked(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
+    found = answers(asked, catalogue)
+    return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, found, strict=True)]
+
+
+def effect_of(machine: Machine, drafts: Mapping[int, AxisDraft], catalogue: Catalogue) -> Effect:
+    """Effect of a change on the gears of a machine."""
+    now = {axis.number: axis for axis in machine.items}
+    other = [n for n, draft in drafts.items() if draft.answer["designation"] != now[n].answer["designation"]]
+    without = [n for n, draft in drafts.items() if draft.answer["selected"] is None and draft.ordering_code is None]
+    before = gears_of(map(_placed, now.items()), catalogue).weight_kg
+    then = gears_of(map(_placed, {**now, **drafts}.items()), catalogue).weight_kg
+    return Effect(len(drafts), tuple(other), tuple(without), before, then)
+
+
+def _placed(item: tuple[int, AxisDraft]) -> Placed:
+    number, axis = item
+    return Placed(number, axis.quantity, axis.ordering_code, axis.answer["selected"])
+
+
+# --- Fewest kinds -----------------------------------------------------------------------------------------------------
+
+
+def kinds_in(machine: Machine, catalogue: Catalogue, most: int | None = None) -> MachineKinds:
+    """Fewest kinds of gears for the axes of a machine that have an answer."""
+    common = common_of(machine)
+    pairs = ((axis, resolved(axis, common).application) for axis in machine.items)
+    sought = [
+        Sought(axis.number, axis.quantity, application, axis.answer["designation"])
+        for axis, application in pairs
+        if application is not None and axis.answer["status"] != "open"
+    ]
+    return kinds_of(sought, catalogue, most=most)
+
+
+# --- Changes that can be undone ---------------------------------------------------------------------------------------
+
+
+class AxesPatch(msgspec.Struct, frozen=True):
+    """Merge patch of some axes, for the values that another merge patch has left there."""
+
+    numbers: tuple[int, ...]
+    patch: Json
+    left: Json
+
+
+class Undo(msgspec.Struct, frozen=True, omit_defaults=True):
+    """Inverse of a change: patches, common values as they are now and were before, axes to remove and to bring back."""
+
+    patches: tuple[AxesPatch, ...] = ()
+    common: tuple[Json, Json] | None = None
+    added: tuple[int, ...] = ()
+    removed: tuple[int, ...] = ()
+    order: tuple[int, ...] = ()
+
+
+class Plan(NamedTuple):
+    """A change before it is made: its inverse, its effect, and the gears of its axes by their numbers."""
+
+    change: Change
+    undo: Undo
+    effect: Effect
+    gears: Mapping[int, str | None]
+
+
+class OvertakenError(Exception):
+    """Others have changed something since: the axes by their numbers, none where it is the machine itself."""
+
+    def __init__(self, numbers: Sequence[int] = ()) -> None:
+        super().__init__("others have changed this since")
+        self.numbers = tuple(numbers)
+
+
+def plan_patches(
+    machine: Machine, patches: Sequence[tuple[SavedAxis, Json]], catalogue: Catalogue, by: str | None
+) -> Plan:
+    """A merge patch of each of some axes."""
+    drafts = drafted([(axis, after(axis, patch)) for axis, patch in patches], common_of(machine), catalogue)
+    changed = [(axis.number, axis.version, draft) for (axis, _), draft in zip(patches, drafts, strict=True)]
+    back: dict[bytes, tuple[list[int], Json, Json]] = {}
+    for axis, patch in patches:
+        other = inverse(own_values(axis), patch)
+        back.setdefault(json_of({"back": other, "patch": patch}), ([], other, patch))[0].append(axis.number)
+    undo = Undo(tuple(AxesPatch(tuple(numbers), other, patch) for numbers, other, patch in back.values()))
+    found = {number: draft for number, _, draft in changed}
+    return Plan(Change(machine.version, by, changed=changed), undo, effect_of(machine, found, catalogue), _gears(found))
+
+
+def plan_common(machine: Machine, common: Json, catalogue: Catalogue, by: str | None) -> Plan:
+    """Other common values."""
+    found = answered(machine, common, catalogue)
+    values = {"common": msgspec.json.encode(common).decode()}
+    axes = {
+        axis.number: replace(axis, answer=answer) for axis, (_, _, answer) in zip(machine.items, found, strict=True)
+    }
+    undo = Undo(common=(common, common_of(machine)))
+    change = Change(machine.version, by, values, answered=found)
+    return Plan(change, undo, effect_of(machine, axes, catalogue), _gears(axes))
+
+
+def plan_kinds(machine: Machine, count: int, catalogue: Catalogue, by: str | None) -> Plan:
+    """The step with a number of kinds: each axis that it changes takes size and ratio of its gear as its own values.
+
+    Raises Problem 422 for a number of kinds that is no step.
+    """
+    step = next((each for each in kinds_in(machine, catalogue).kinds if each.count == count), None)
+    if step is None:
+        raise Problem(422, f"{count} is no number of kinds that serves every axis")
+    there = {axis.number: axis for axis in machine.items}
+    patches = []
+    for change in step.changes:
+        gear, axis = catalogue.by_designation[change.gear_to], there[change.axis]
+        patch: Json = {"application": {"requirements": {"sizes": [gear.size], "ratios": [gear.ratio]}}}
+        patches.append((axis, patch if axis.ordering_code is None else patch | {"ordering_code": None}))
+    return plan_patches(machine, patches, catalogue, by)
+
+
+def plan_copies(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> Change:
+    """The same axes once more, behind the others."""
+    same = AxisDraft.__dataclass_fields__
+    return Change(machine.version, by, new=[AxisDraft(**{n: getattr(axis, n) for n in same}) for axis in axes])
+
+
+def plan_removal(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> tuple[Change, Undo]:
+    """Axes go; their numbers bring them back."""
+    gone = [(axis.number, axis.version) for axis in axes]
+    return Change(machine.version, by, removed=gone), Undo(removed=tuple(n for n, _ in gone), order=machine.order)
+
+
+def plan_undo(
+    machine: Machine, undo: Undo, gone: Sequence[SavedAxis], catalogue: Catalogue, by: str | None
+) -> tuple[Change, Undo]:
+    """The inverse of a change, and its own inverse; raises OvertakenError where others have changed the same since.
+
+    `gone` are the axes to be brought back.
+    """
+    there = {axis.number: axis for axis in machine.items}
+    if undo.common is not None:
+        if common_of(machine) != undo.common[0]:
+            raise OvertakenError
+        return plan_common(machine, undo.common[1], catalogue, by)[:2]
+    if undo.patches:
+        wanted = [(number, each) for each in undo.patches for number in each.numbers]
+        lost = [n for n, each in wanted if n not in there or not _is_left(own_values(there[n]), each.left)]
+        if lost:
+            raise OvertakenError(lost)
+        return plan_patches(machine, [(there[n], each.patch) for n, each in wanted], catalogue, by)[:2]
+    if undo.added:
+        return plan_removal(machine, [there[number] for number in undo.added if number in there], by)
+    common = common_of(machine)
+    found = answers([Asked(resolved(axis, common), axis.ordering_code) for axis in gone], catalogue)
+    back = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, found, strict=True)]
+    return Change(machine.version, by, restored=back), Undo(added=tuple(number for number, _ in back))
+
+
+def inverse(target: Any, patch: Mapping[str, Any]) -> Json:
+    """Merge patch that takes a value back to what it was before another one."""
+    back: Json = {}
+    for name, value in patch.items():
+        before = target.get(name) if isinstance(target, Mapping) else None
+        is_part = isinstance(value, Mapping) and isinstance(before, Mapping)
+        back[name] = inverse(before, value) if is_part else before
+    return back
+
+
+def _is_left(own: Json, patch: Json) -> bool:
+    """True where an axis has the values that a patch has left."""
+    return all(_same(own.get(name), patched(own.get(name), value)) for name, value in patch.items())
+
+
+def _same(one: Any, other: Any) -> bool:
+    return list(one or ()) == list(other or ()) if isinstance(one, list | tuple) else one == other
+
+
+def _gears(axes: Mapping[int, AxisDraft]) -> dict[int, str | None]:
+    return {number: axis.answer["selected"] and axis.answer["designation"] for number, axis in axes.items()}

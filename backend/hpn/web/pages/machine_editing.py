@@ -1,0 +1,128 @@
+"""Form of a change on the page of a machine: what was sent, what it says of values, and what the page says of it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
+
+import msgspec
+
+from hpn.documents.common import flat
+from hpn.store import Machine, SavedAxis
+from hpn.tables.files import packed, unpacked
+from hpn.tables.numbers import read_value
+from hpn.web.columns import common_of, json_of, own_of, without_of
+from hpn.web.door.visit import current
+from hpn.web.edits import Plan
+from hpn.web.form import common as fields
+from hpn.web.form.form import Form
+from hpn.words.wording import N_, Sentence
+
+OF_MANY = ("u", "Lh", "Lb", "fw", "size", "i")
+"""Fields that are set for several axes at once, beside their quantity."""
+
+QUANTITY = "quantity"
+MOST_UNDONE = 20
+"""Changes that can be undone, one after the other."""
+
+NO_VALUE = N_("Enter a value, or take the machine’s.")
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """The form as it was sent. `seen` are the marked axes with the versions that the page showed."""
+
+    do: str = ""
+    target: str = ""
+    symbol: str = "u"
+    seen: Mapping[int, int] = field(default_factory=dict)
+    everything: bool = False
+    before: str = ""
+    past: tuple[str, ...] = ()
+    pairs: tuple[tuple[str, str], ...] = ()
+
+    @classmethod
+    def of(cls, pairs: Sequence[tuple[str, str]]) -> Self:
+        """What the fields of a form say; what can't be is left out."""
+        given = dict(pairs)
+        marks = [text.partition(":") for name, text in pairs if name == "axis"]
+        seen = {int(n): int(v) for n, _, v in marks if is_number(n) and is_number(v)}
+        past = tuple(text for name, text in pairs if name == "past")[-MOST_UNDONE:]
+        chosen = given.get("field", "u")
+        return cls(
+            given.get("do", ""),
+            given.get("target", ""),
+            chosen if chosen in (*OF_MANY, QUANTITY) else "u",
+            seen,
+            "everything" in given,
+            given.get("before", ""),
+            past,
+            tuple(pairs),
+        )
+
+
+def is_number(text: str) -> bool:
+    """True for a whole number of few digits."""
+    return text.isascii() and text.isdigit() and len(text) < 10
+
+
+@dataclass(frozen=True)
+class Editing:
+    """What the page says of a change: its form as sent, effect, problems, and what can be undone."""
+
+    sent: Sent = field(default_factory=Sent)
+    common: Form | None = None
+    before: str = ""
+    many: Form = field(default_factory=lambda: fields.form_of({}, current()))
+    quantity: str = ""
+    plan: Plan | None = None
+    said: Sentence | None = None
+    is_refused: bool = False
+    overtaken: tuple[int, ...] = ()
+    past: tuple[str, ...] = ()
+
+
+# --- Reading ----------------------------------------------------------------------------------------------------------
+
+
+def opened_common(machine: Machine) -> Editing:
+    """The form of the common values as they are."""
+    values = dict(flat(common_of(machine)))
+    return Editing(common=fields.form_of(values, current()), before=packed(json_of(values)))
+
+
+def values_in(carried: str) -> dict[str, Any]:
+    """Common values that a form was opened with; none where it says nothing that can be read."""
+    try:
+        found = msgspec.json.decode(unpacked(carried.encode()) or b"{}")
+    except msgspec.DecodeError:
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def patch_in(sent: Sent) -> tuple[Editing, dict[str, Any] | None]:
+    """Own values to be set, as a merge patch of an axis; None where there is none or it is wrong."""
+    if sent.symbol == QUANTITY:
+        text = dict(sent.pairs).get(QUANTITY, "")
+        value = read_value(text, "whole") if text.strip() else Sentence(NO_VALUE)
+        editing = Editing(sent, quantity=text)
+        if isinstance(value, Sentence):
+            return replace(editing, said=value, is_refused=True), None
+        return editing, {QUANTITY: value}
+    form, values = fields.read(sent.pairs, [sent.symbol], current())
+    editing = Editing(sent, many=form)
+    if form.problems or not values:
+        said = form.problems[0].message if form.problems else Sentence(NO_VALUE)
+        return replace(editing, said=said, is_refused=True), None
+    return editing, {"application": fields.nested(values)}
+
+
+def inherited(axis: SavedAxis, name: str) -> dict[str, Any]:
+    """Merge patch by which an axis takes the machine's value of a field."""
+    path = fields.BY_SYMBOL[name][0]
+    patch: dict[str, Any] = {}
+    part = path.partition(".")[0]
+    if own_of(axis).get(part) is not None:
+        patch["application"] = fields.nested({path: None})
+    if path in (without := without_of(axis)):
+        patch["without"] = [each for each in without if each != path]
+    return patch

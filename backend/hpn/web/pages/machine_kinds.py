@@ -1,0 +1,75 @@
+"""Fewest kinds of gears of a machine, beside its page: the curve, and the steps that are worth a decision."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element
+
+from fastapi import APIRouter
+from starlette.requests import Request
+from starlette.responses import Response
+
+from hpn.catalogue import Catalogue
+from hpn.documents.kinds import KindsStep, MachineKinds
+from hpn.explain.drawings.kinds import kinds_curve
+from hpn.store import Machine
+from hpn.web.door.access import admit
+from hpn.web.door.pools import compute
+from hpn.web.door.problems import needs
+from hpn.web.door.visit import current
+from hpn.web.edits import kinds_in
+from hpn.web.machines import found
+from hpn.web.pages.machine_view import ADDRESS
+from hpn.web.pages.rendering import or_reason, page
+from hpn.web.pages.sized_fleets import REASON, may_change
+
+
+class Decision(NamedTuple):
+    """A step with fewer kinds than now for which more mass is paid, or none."""
+
+    step: KindsStep
+    more_kg: float
+
+
+class KindsView(NamedTuple):
+    """Fewest kinds as the page shows them."""
+
+    found: MachineKinds
+    decisions: list[Decision]
+    drawing: Element | None
+    names: Mapping[int, str]
+
+
+@or_reason(REASON)
+async def show_kinds(request: Request) -> Response:
+    """Fewest kinds of a machine."""
+    machine = await found(request, request.path_params["fleet"], None, "machine")
+    return await compute(request, "batches", _page, request, machine)
+
+
+def _page(request: Request, machine: Machine) -> Response:
+    values: dict[str, Any] = {"saved": machine, "may_change": may_change(request, machine)}
+    return page(request, "machine_kinds.html", kinds=view_of(machine, request.app.state.catalogue), **values)
+
+
+def view_of(machine: Machine, catalogue: Catalogue) -> KindsView:
+    """Fewest kinds, the steps worth a decision from the most kinds down, and their drawing."""
+    kinds = kinds_in(machine, catalogue)
+    names = {axis.number: axis.name or str(axis.number) for axis in machine.items}
+    drawing = kinds_curve([(step.count, step.weight_kg) for step in kinds.kinds], current())
+    return KindsView(kinds, _decisions(kinds), drawing, names)
+
+
+def _decisions(kinds: MachineKinds) -> list[Decision]:
+    """Steps below the first, but for those that a smaller number of kinds does without more mass."""
+    if not kinds.kinds:
+        return []
+    now, *fewer = kinds.kinds
+    return [
+        Decision(step, step.weight_kg - now.weight_kg)
+        for at, step in enumerate(fewer)
+        if not any(less.weight_kg <= step.weight_kg for less in fewer[at + 1 :])
+    ]
+
+
+router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
+router.add_api_route(f"{ADDRESS}/{{fleet}}/kinds", show_kinds, dependencies=[admit("reading")])
