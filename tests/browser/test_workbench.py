@@ -158,11 +158,11 @@ def test_verdict_stays_in_sight_wherever_somebody_types_or_reads(visitor: Visito
     page.mouse.move(900, 600)
     page.mouse.wheel(0, 2000)
     page.wait_for_function("() => scrollY > 300")
-    page.get_by_label("Expected emergency stops").fill("100")
+    page.locator("#f-Nk").fill("100")
     expect(page).to_have_url(re.compile("Nk=100"))
 
     assert in_sight(page, selected(page)) == [True]
-    expect(page.get_by_label("Expected emergency stops")).to_be_in_viewport()
+    expect(page.locator("#f-Nk")).to_be_in_viewport()
 
 
 def test_an_edit_brings_what_is_in_sight_and_a_section_that_is_opened_follows_from_then_on(visitor: Visitor) -> None:
