@@ -166,7 +166,7 @@ def test_neighbours_compare(client: TestClient, saved: dict[str, Json]) -> None:
 
 def test_fleets_open_with_their_files(client: TestClient, fleets: dict[str, list[Json]]) -> None:
     for language in LANGUAGES:
-        assert all(id in got(client, "/machines/saved", language).text for id in fleets)
+        assert all(id in got(client, "/machines", language).text for id in fleets)
     for id in fleets:
         for language in LANGUAGES:
             assert all(axis in got(client, f"/machines/{id}", language).text for axis in ("hub", "belt", "grip"))
