@@ -44,7 +44,7 @@ STYLES = {
         "print",
         "paper",
     ),
-    **{f"{part}.css": (part,) for part in ("motion", "reading")},
+    **{f"{part}.css": (part,) for part in ("motion", "reading", "axis")},
     "report.css": ("tokens", "app", "tools", "fleet", "phone", "print"),
 }
 """Style sheets of the form with its result, of all other pages, of parts that come later and bring their own, and of a
@@ -54,7 +54,7 @@ OF_FORM = ("form", "replacing", "undo", "messages", "requests", "rows", "answer"
 SCRIPTS = (*OF_FORM, "sections", "connection", "insight", "plots", "tools")
 """Modules of the form's page."""
 
-ALONE = ("docs.js", "favicon.svg", "fleet-report.js", "machine.js", "plots.js")
+ALONE = ("axis.js", "docs.js", "favicon.svg", "fleet-report.js", "machine.js", "plots.js")
 """Files that a page asks for by themselves; a fleet’s report holds its script."""
 
 NOTO = FRONTEND / "node_modules/@expo-google-fonts"

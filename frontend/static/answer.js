@@ -85,7 +85,7 @@ document.addEventListener("submit", async (event) => {
   if (form.method === "post") return form.submit(); // a cycle too long for an address is posted again
   note();
   const content = contentOf(form);
-  if (!isAddressed(content)) history.replaceState(history.state, "", `/?${content}`);
+  if (!isAddressed(content)) history.replaceState(history.state, "", `${location.pathname}?${content}`);
   location.reload();
 });
 

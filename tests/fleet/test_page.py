@@ -6,7 +6,6 @@ import io
 import re
 from html import unescape
 from pathlib import Path
-from urllib.parse import urlencode
 
 import openpyxl
 import pyarrow as pa
@@ -60,15 +59,16 @@ def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, s
     page = unescape(client.get(fleet).text)
 
     applications = [Application.model_validate(HUB), Application.model_validate(HEAVY)]
-    for name, application in zip(("Hub Ä", "Band"), applications, strict=True):
-        assert f'<a href="{to_link(application)}&{urlencode({"title": name})}">{name}</a>' in page
+    for number, (name, application) in enumerate(zip(("Hub Ä", "Band"), applications, strict=True), 1):
+        assert f'<a href="{fleet}/axes/{number}">{name}</a>' in page
+        assert to_link(application) in unescape(client.get(f"{fleet}/axes/{number}").text)
     assert f'<td class="gear">{select(applications[0], service.state.catalogue).selected}</td>' in page
     assert "No gear; nearest HPN-" in page
     weight = next(
         g.weight_kg for g in service.state.catalogue.gears if f'<td class="gear">{g.designation}</td>' in page
     )
     assert re.search(rf'Weight, all gears</p>\s*<p class="value">\s*<data class="quantity" value="{weight}">', page)
-    assert re.search(r'Greifer</th>.*?class="reason"[^>]*>[^/]*/span> Torque: row 6: ', page, re.DOTALL)
+    assert re.search(r'Greifer</a>\s*</th>.*?class="reason"[^>]*>[^/]*/span> Torque: row 6: ', page, re.DOTALL)
     german = unescape(client.get(fleet, headers={"Accept-Language": "de"}).text)
     assert re.search(
         r'class="reason"[^>]*>[^/]*/span> Drehmoment: Zeile 6: muss eine Zahl sein, z. B. 9.3, nicht "abc"\s*<', german
@@ -324,7 +324,7 @@ def test_a_table_of_hpn_fleet_is_sized_at_once(client: TestClient, tmp_path: Pat
     sized = post(client, file.read_bytes())
 
     assert sized.status_code == 303, sized.text
-    assert to_link(Application.model_validate(HUB)) in unescape(client.get(sized.headers["location"]).text)
+    assert to_link(Application.model_validate(HUB)) in unescape(client.get(f"{sized.headers['location']}/axes/1").text)
 
 
 def test_names_of_phases_reach_the_link_of_their_axis(client: TestClient) -> None:
@@ -333,7 +333,9 @@ def test_names_of_phases_reach_the_link_of_their_axis(client: TestClient) -> Non
     sized = post(client, fields={**fields_of(post(client, table.encode()).text), "size": "1"})
 
     assert sized.status_code == 303
-    assert "n=250&t=1&pn=hoch&T=32&n=500&t=2&pn=runter" in unescape(client.get(sized.headers["location"]).text)
+    assert "n=250&t=1&pn=hoch&T=32&n=500&t=2&pn=runter" in unescape(
+        client.get(f"{sized.headers['location']}/axes/1").text
+    )
 
 
 def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Path) -> None:

@@ -59,6 +59,7 @@ from hpn.web.pages import (
     sized_fleets,
     transfer,
 )
+from hpn.web.pages import axis as axis_pages
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
 from hpn.web.pages import fleets as fleet_pages
@@ -123,6 +124,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     files.posted_files,
     files.linked_files,
     pages.router,
+    axis_pages.router,
     assets.router,
     assets.docs_router,
     readers.router,

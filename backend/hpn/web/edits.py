@@ -1,10 +1,11 @@
 """Changes of a machine's axes and common values as REST and the pages make them, and their effect on its gears."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import msgspec
+from starlette.requests import Request
 
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import Asked, answers
@@ -15,7 +16,7 @@ from hpn.documents.merge import resolve
 from hpn.store import AxisDraft, Change, Machine, SavedAxis
 from hpn.web.columns import columns_of, common_of, draft_of, json_of, own_of, resolved, without_of
 from hpn.web.door.problems import Problem
-from hpn.web.machines import answered, patched
+from hpn.web.machines import answered, apply, author_of, no_axis, patched
 
 Json = dict[str, Any]
 
@@ -65,6 +66,30 @@ def drafted(
     asked = [Asked(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
     found = answers(asked, catalogue)
     return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, found, strict=True)]
+
+
+async def replace_axis(
+    request: Request,
+    id: str,
+    number: int,
+    values: Callable[[SavedAxis], dict[str, Any]],
+    require: Callable[[Machine, SavedAxis], None],
+) -> None:
+    """Give an axis other own values; `require` raises Problem 412 where it is no more as its maker has seen it.
+
+    Raises Problem as `apply` does, and 404 for an axis that is not there.
+    """
+    catalogue: Catalogue = request.app.state.catalogue
+
+    def make(machine: Machine) -> Change:
+        if not machine.items:
+            raise no_axis(number)
+        (axis,) = machine.items
+        require(machine, axis)
+        draft = drafted([(axis, values(axis))], common_of(machine), catalogue)[0]
+        return Change(machine.version, author_of(request, machine), changed=[(number, axis.version, draft)])
+
+    await apply(request, id, make, [number])
 
 
 def effect_of(machine: Machine, drafts: Mapping[int, AxisDraft], catalogue: Catalogue) -> Effect:

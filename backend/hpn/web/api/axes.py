@@ -1,6 +1,6 @@
 """Axes of machines over REST: add, read, replace, change one or many, remove, bring back."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query
@@ -29,7 +29,7 @@ from hpn.web.door.conditions import require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.edits import FIELDS, Effect, after, drafted, effect_of, named
+from hpn.web.edits import FIELDS, Effect, after, drafted, effect_of, named, replace_axis
 from hpn.web.form.link_writer import to_link
 from hpn.web.machines import (
     apply,
@@ -247,20 +247,13 @@ def _patch_in(body: bytes) -> dict[str, Any]:
     return patch
 
 
-async def _changed(request: Request, id: str, number: int, values: Any) -> Response:
+async def _changed(request: Request, id: str, number: int, values: Callable[[SavedAxis], dict[str, Any]]) -> Response:
     """An axis after a change of its own values."""
-    catalogue: Catalogue = request.app.state.catalogue
 
-    def make(machine: Machine) -> Change:
-        if not machine.items:
-            raise no_axis(number)
-        (axis,) = machine.items
+    def require(machine: Machine, axis: SavedAxis) -> None:
         require_match(request, axis_tag(machine, axis))
-        draft = drafted([(axis, values(axis))], common_of(machine), catalogue)[0]
-        by = author_of(request, machine)
-        return Change(machine.version, by, changed=[(number, axis.version, draft)])
 
-    await apply(request, id, make, [number])
+    await replace_axis(request, id, number, values, require)
     return _tagged(*await axis_of(request, id, number))
 
 

@@ -26,6 +26,9 @@ LABELS: Mapping[str, str] = {
 }
 """All labels: those of the title block, and what the ordering code is put together from."""
 
+OF_AXIS: Mapping[str, str] = {"name": N_("Name"), "quantity": N_("Quantity"), "note": N_("Note")}
+"""Labels of an axis of a machine."""
+
 
 def query_of(labels: Mapping[str, str]) -> str:
     """Tail of an address that gives labels: `&title=Axis+7`, nothing for blank ones."""

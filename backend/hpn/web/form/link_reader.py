@@ -5,7 +5,7 @@ way back. Names are the handbook's symbols, values are in the units of the API.
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -70,11 +70,15 @@ _TABLES = (
 """Tables of the model, their inputs by field, and the input beside which any other error of a row is shown."""
 
 
-def parse(pairs: Pairs) -> Form:
+Completes = Callable[[dict[str, Any]], dict[str, Any]]
+"""The whole of an application, as JSON, of which a query gives a part."""
+
+
+def parse(pairs: Pairs, whole: Completes = dict) -> Form:
     """Form of a query, with everything that the query says and a message for each wrong field."""
     given = Given(with_beside(pairs))
-    focus = play(given, lambda sorted_pairs: _read(sorted_pairs)[0])
-    application, problems = _read(given)
+    focus = play(given, lambda sorted_pairs: _read(sorted_pairs, whole)[0])
+    application, problems = _read(given, whole)
     decimal = given.notation.reader.decimal
     return Form(
         rows=tuple(given.phases.rows),
@@ -98,12 +102,13 @@ def parse(pairs: Pairs) -> Form:
     )
 
 
-def _read(given: Given) -> tuple[Application | None, list[FieldProblem]]:
+def _read(given: Given, whole: Completes) -> tuple[Application | None, list[FieldProblem]]:
     """Application that is given, or a message for each wrong field; neither where the form is still blank."""
     problems = [*given.problems(), *_list_problems(given)]
+    document, unread = _document(given)
+    document = whole(document)
     if _untouched(given):
         return None, problems
-    document, unread = _document(given)
     problems += unread
     application, refused = _validated(document, given.duty.rows, problems)
     problems += refused

@@ -79,8 +79,8 @@ def _cycle(application: Application) -> str:
             written = ["" if value is None else repr(value) for value in values]
             pairs = [f"{pair}&{symbol.name}={value}" for pair, value in zip(pairs, written, strict=True)]
     if any(phase.name for phase in phases):
-        return "&".join(f"{_shortened(pair)}&pn={quote(p.name or '')}" for pair, p in zip(pairs, phases, strict=True))
-    return _shortened("&".join(pairs))
+        return "&".join(f"{shortened(pair)}&pn={quote(p.name or '')}" for pair, p in zip(pairs, phases, strict=True))
+    return shortened("&".join(pairs))
 
 
 def _mechanism(motion: Motion) -> Iterator[str]:
@@ -122,13 +122,13 @@ def _items(value: Any) -> Iterator[Any]:
 
 def _written(value: float | str) -> str:
     if isinstance(value, float):
-        return _shortened(repr(value))
+        return shortened(repr(value))
     if isinstance(value, int):
         return str(int(value))
     return quote(value, safe="/:" if isinstance(value, BySize) else "/")
 
 
-def _shortened(numbers: str) -> str:
+def shortened(numbers: str) -> str:
     """Numbers, between ampersands, without zeros and signs that say nothing."""
     text = numbers.replace(".0&", "&").removesuffix(".0")
     return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text

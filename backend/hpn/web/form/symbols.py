@@ -9,6 +9,7 @@ from functools import cache
 
 from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
+from hpn.documents.common import COMMON
 from hpn.engine.notice import AREAS
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
@@ -417,6 +418,9 @@ MOVE_BY_NAME = {symbol.name: symbol for symbol in TURN_SYMBOLS}
 MOVE_BY_LEAF = {symbol.path[-1]: symbol for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
 BY_NAME = {symbol.name: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 BY_PATH = {symbol.path: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
+COMMON_NAMES = {BY_PATH[path].name: name for name in COMMON if (path := tuple(name.split("."))) in BY_PATH}
+"""Paths of what an axis may have from its machine, by the names of links."""
+
 _SINGLE = (*PHASE_SYMBOLS, *SYMBOLS, *MECHANISM_SYMBOLS)
 LABELS = {
     **{symbol.name: symbol.named.name for symbol in (*TURN_SYMBOLS, *_SINGLE, *BODY_SYMBOLS)},
@@ -425,6 +429,7 @@ LABELS = {
     "gear": CANDIDATE["designation"].name,
     "tol": N_("Tolerance"),
     **labels.LABELS,
+    **labels.OF_AXIS,
 }
 """Names of the fields of the form in a list of errors."""
 

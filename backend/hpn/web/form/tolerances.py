@@ -71,7 +71,12 @@ def _path(place: Sequence[str]) -> str:
 def written(application: Application) -> Iterator[str]:
     """Tolerances of an application as a link has them, in the order in which they were given."""
     for path, tolerance in (application.tolerances or {}).items():
-        yield f"{symbol_of(path)}:{_written(tolerance)}"
+        yield text_of(path, tolerance)
+
+
+def text_of(path: str, tolerance: Tolerance) -> str:
+    """Tolerance of the input that a path names as a link has it; KeyError for a path that is none."""
+    return f"{symbol_of(path)}:{_written(tolerance)}"
 
 
 def symbol_of(path: str) -> str:

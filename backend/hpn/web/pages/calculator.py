@@ -32,6 +32,7 @@ from hpn.web.form.labels import query_of
 from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK, WRITTEN_AT
 from hpn.web.form.offers import beside_fields
+from hpn.web.pages.axis_view import AxisView
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
@@ -75,7 +76,8 @@ class MapCell:
 class Answer(Result):
     """The result of the live page, with the gears beside the chosen one.
 
-    `link` is the application alone, `address` all that the form says.
+    `link` is the application alone, `address` all that the form says; on the page of an axis, `axis`, these are of its
+    own part, and `whole` is all of it as a selection of its own.
     `own_cycle` is the address without what the worked example has left beside another cycle, else empty.
     """
 
@@ -83,11 +85,13 @@ class Answer(Result):
     catalogue: Catalogue
     link: str
     address: str
+    whole: str
     order: OrderingCode
     map: tuple[tuple[int, tuple[MapCell | None, ...]], ...]
     insight: Insight
     own_cycle: str
     form: Form
+    axis: AxisView | None = None
     live: bool = True
 
     @cached_property
@@ -111,12 +115,13 @@ class Answer(Result):
 
     def tries(self, designation: str) -> tuple[str, ...]:
         """Links that follow the alternatives of a gear's remedy, one each."""
-        return tuple(to_link(tried(self.application, one, self.catalogue)) for one in self.alternatives(designation))
+        found = self.alternatives(designation)
+        return tuple(self.links(tried(self.application, one, self.catalogue)) for one in found)
 
     @property
     def carried(self) -> str:
         """Query for the links to other pages, which hand the selection on; blank for one that is too long for that."""
-        return self.address[1:] if len(self.address) <= LONGEST_LINK else ""
+        return self.whole[1:] if len(self.whole) <= LONGEST_LINK else ""
 
     @property
     def too_long(self) -> bool:
@@ -144,10 +149,13 @@ def _posted(request: Request, body: bytes) -> Response:
     return respond(request, link_reader.parse(pairs_of(body)))
 
 
-def respond(request: Request, form: Form, *, first: bool = False) -> Response:
-    """The page of a form, or only the part that changes; a first visit says above the answer what the page is for."""
+def respond(request: Request, form: Form, *, first: bool = False, axis: AxisView | None = None) -> Response:
+    """The page of a form, or only the part that changes; a first visit says above the answer what the page is for.
+
+    The form may be that of an axis of a machine.
+    """
     catalogue: Catalogue = request.app.state.catalogue
-    form, answer = answered(form, catalogue)
+    form, answer = answered(form, catalogue, axis)
     changes = "hx-request" in request.headers
     # The page holds nothing that its address has not.
     alone = not (form.focus or form.asides or form.bodies.given)
@@ -161,9 +169,11 @@ def respond(request: Request, form: Form, *, first: bool = False) -> Response:
         request.app.state.metrics.selections(["none" if answer.selection.selected is None else "selected"])
     if answer is None and parts <= PARTS:
         return Response(status_code=204)  # a form with faults has no parts to fetch: those of the answer before stay
-    template = "_changes.html" if changes else "page.html"
-    status = 422 if form.problems else 200
-    shown = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once_key(), "first": first}
+    template = "_changes.html" if changes else "axis.html" if axis else "page.html"
+    status = 422 if form.problems and not (axis and not axis.changed) else 200
+    once = "" if axis else once_key()  # what is saved of an axis names the state that it changes
+    shown: dict[str, Any] = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once}
+    shown |= {"first": first, "axis": axis, "bench": axis.place if axis else "/"}
     printed = absolute(request, answer.address) if answer else ""
     return _render(request, template, status, printed=printed, **shown)
 
@@ -174,7 +184,7 @@ def read_query(query: bytes) -> Form:
     return link_reader.parse(pairs_of(text))
 
 
-def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
+def answered(form: Form, catalogue: Catalogue, axis: AxisView | None = None) -> tuple[Form, Answer | None]:
     """Answer to a form; a form that can't be answered comes back with its problems."""
     if form.gear and catalogue.find(form.gear) is None:
         unknown = Sentence(N_("{gear} is not a gear of the catalogue"), {"gear": form.gear[:40]})
@@ -183,16 +193,17 @@ def answered(form: Form, catalogue: Catalogue) -> tuple[Form, Answer | None]:
     if form.application is None or form.problems:
         return form, None
     try:
-        return form, _answer(form.application, form, catalogue)
+        return form, _answer(form.application, form, catalogue, axis)
     except InputError as refusal:
         refused = [FieldProblem(*link_reader.place_of(location), sentence) for location, sentence in refusal.sentences]
         return replace(form, application=None, problems=tuple(refused)), None
 
 
-def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answer:
-    link = to_link(application)
+def _answer(application: Application, form: Form, catalogue: Catalogue, axis: AxisView | None) -> Answer:
+    link_of = axis.link if axis else to_link
+    link = link_of(application)
     judged = judge(application, catalogue)
-    selection = judged.selection(to_link)
+    selection = judged.selection(link_of)
     everything = {candidate.designation: candidate for candidate in (*selection.candidates, *judged.left_out())}
     gear = catalogue.find(form.gear or selection.foremost.designation)
     assert gear is not None  # `answered` refuses what the catalogue lacks
@@ -207,14 +218,19 @@ def _answer(application: Application, form: Form, catalogue: Catalogue) -> Answe
         asked=bool(form.gear),
         catalogue=catalogue,
         link=link,
-        example=application == Application.worked_example(),
-        own_cycle=own + chosen + tail if (own := _own_cycle(link)) else "",
+        example=axis is None and application == Application.worked_example(),
+        own_cycle=own + chosen + tail if axis is None and (own := _own_cycle(link)) else "",
         tail=tail,
-        address=link + chosen + tail,
+        address=axis.address(link, chosen + tail) if axis else link + chosen + tail,
+        whole=to_link(application) + chosen + tail,
+        axis=axis,
+        links=link_of,
         order=order,
         form=form,
         map=_map(selection, everything, catalogue),
-        insight=Insight(application, selection, everything, everything[gear.designation], form.pins, catalogue),
+        insight=Insight(
+            application, selection, everything, everything[gear.designation], form.pins, catalogue, links=link_of
+        ),
     )
 
 
@@ -261,7 +277,7 @@ def _parts(request: Request, form: Form) -> frozenset[str]:
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     form: Form = context["form"]
-    address = _address(context["answer"], form)
+    address = _address(context["answer"], form, context["axis"])
     form = replace(form, problems=beside_fields(form.problems, form.written, current()))
     if "form" in context["parts"]:  # typing brings the result alone, and leaves the fields as they are
         form = for_reader(form, current())
@@ -277,12 +293,14 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
     return response
 
 
-def _address(answer: Answer | None, form: Form) -> str | None:
+def _address(answer: Answer | None, form: Form, axis: AxisView | None) -> str | None:
     """Address for the address bar; None where there is something to correct."""
+    if answer is None and axis and form.empty:
+        return axis.address(axis.open_link, tail_of(form.pins))
     if answer is None:
         return address_of_empty(form) if form.empty else None
     # A page too long for an address must not stand under another's: reloading leads to where it came from.
-    return "/paste" if answer.too_long else answer.address
+    return (axis.place if axis else "/paste") if answer.too_long else answer.address
 
 
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])

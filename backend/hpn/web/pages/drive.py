@@ -1,6 +1,6 @@
 """The motor behind the gear that the page looks at: what its torques leave out, and which motors and gears fit."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -30,6 +30,7 @@ class Drive:
     gear: Gear
     catalogue: Catalogue
     selection: Selection
+    links: Callable[[Application], str] = to_link
     most: int = LISTED_AT_ONCE
 
     @cached_property
@@ -70,7 +71,7 @@ class Drive:
 
     def link(self, use: MotorUse) -> str:
         """Link of the application with a motor of the list, blank for one that is too long to stand for each motor."""
-        link = to_link(with_motor(self.application, use.motor))
+        link = self.links(with_motor(self.application, use.motor))
         return link if len(link) <= LONGEST_LINK else ""
 
     @property

@@ -1,6 +1,6 @@
 """Additions of the page to a verdict: reserves, the remedy to try out, and gears side by side."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from urllib.parse import quote
@@ -21,7 +21,8 @@ from hpn.words.wording import N_, Sentence
 class Insight:
     """Reserves, remedy and neighbours of the chosen gear, each worked out when a section asks for it.
 
-    `everything` holds every gear of the catalogue by designation; `pins` are the gears that the reader pinned.
+    `everything` holds every gear of the catalogue by designation; `pins` are the gears that the reader pinned, and
+    `links` makes the address of the same page with another application.
     """
 
     application: Application
@@ -30,13 +31,14 @@ class Insight:
     chosen: Candidate
     pins: tuple[str, ...]
     catalogue: Catalogue
+    links: Callable[[Application], str] = to_link
 
     @property
     def same_life(self) -> str:
         """Link that asks of the output bearing the life that is asked of the gear, as L10."""
         load = self.application.loads or OutputLoad()
         lasting = load.model_copy(update={"life_h": self.application.requirements.life_h, "life_basis": "L10"})
-        return to_link(self.application.model_copy(update={"output_load": lasting}))
+        return self.links(self.application.model_copy(update={"output_load": lasting}))
 
     @property
     def at_centre(self) -> str:

@@ -4,6 +4,7 @@
 comes along as the field `link`, so that nothing typed is lost on the way.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from urllib.parse import urlencode
@@ -35,12 +36,14 @@ from hpn.web.form.linked import query_part
 from hpn.web.form.rows import TEXT, filled, used_columns
 from hpn.web.form.symbols import BY_NAME, PHASE_BY_NAME
 from hpn.web.pages import calculator
+from hpn.web.pages.axis_view import OF_AXIS, PLACE, place_of
 from hpn.web.pages.reading import read
 from hpn.web.pages.templates import environment
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
 
 NOTHING = N_("the workbook is empty")
+_AXIS = re.compile(r"([A-Za-z0-9_-]{1,60})/([0-9]{1,10})")
 WANTED = Wanted(CYCLE, MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 
 
@@ -132,7 +135,8 @@ def _of_application(request: Request, link: str, text: str, take: str) -> Respon
     draft = _opened(link, text)
     if draft.application and (take or "hx-request" not in request.headers):
         query = to_link(draft.application).removeprefix("/?")
-        return _proceed(request, pairs_of(query))
+        of_axis = (pair for pair in pairs_of(link) if pair[0] in OF_AXIS)
+        return _proceed(request, [*pairs_of(query), *of_axis])
     return _render(request, draft, 422 if draft.problems else 200)
 
 
@@ -202,8 +206,12 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
 
 
 def _proceed(request: Request, pairs: Pairs) -> Response:
-    """On to the page: by its address, and where that would be too long, right here."""
+    """On to the page: by its address, and where that would be too long, right here; an axis has a page of its own."""
     query = urlencode(pairs)
+    if axis := _AXIS.fullmatch(dict(pairs).get(PLACE, "")):
+        if len(query) > MAXIMUM_QUERY_BYTES:
+            raise Problem(413, Sentence(N_("too long for the page of an axis: give it over REST")))
+        return RedirectResponse(f"{place_of(axis[1], int(axis[2]))}?{query}", 303)
     if len(query) > MAXIMUM_QUERY_BYTES:
         return calculator.respond(request, link_reader.parse(pairs))
     return RedirectResponse(f"/?{query}", 303)

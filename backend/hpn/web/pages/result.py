@@ -1,7 +1,7 @@
 """Content of a page for a selection, computed just now or saved: the partials of the templates read it."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,6 +20,7 @@ from hpn.explain.comparison import lighter_miss
 from hpn.explain.drawings import Pictures, Subject
 from hpn.files.export import DIGITS
 from hpn.web.door.visit import current
+from hpn.web.form.link_writer import to_link
 from hpn.web.pages.drive import Drive
 from hpn.words.quantities import LISTED
 from hpn.words.reader import Reader
@@ -62,7 +63,7 @@ class Result:
     `application` is None where it was saved by a version with other inputs. `catalogue` is the one that the selection
     was made from, None where that is not kept. `example` tells whether the application is the handbook's. `choosing`
     stands before the designation in the address of a saved selection that looks at another candidate, `tail` behind
-    the live page's links: pins and labels.
+    the live page's links: pins and labels. `links` makes the address of the same page with another application.
     """
 
     selection: Selection
@@ -72,6 +73,7 @@ class Result:
     catalogue: Catalogue | None
     choosing: str = ""
     tail: str = ""
+    links: Callable[[Application], str] = to_link
     live: bool = False
     example: bool = False
 
@@ -128,7 +130,7 @@ class Result:
         """Motor of the chosen candidate, or None where what it needs is not kept."""
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
-        return Drive(self.application, self.gear, self.catalogue, self.selection)
+        return Drive(self.application, self.gear, self.catalogue, self.selection, self.links)
 
     @property
     def tolerance(self) -> Sentence | None:

@@ -1,0 +1,243 @@
+"""An axis of a machine as the workbench shows it: what is its own, what it inherits, and where it stands."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+from urllib.parse import parse_qsl, urlencode
+
+from pydantic import ValidationError
+
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.catalogue.ordering import OrderingCode, ordering_code, read_ordering_code
+from hpn.documents.axis import Axis
+from hpn.documents.common import COMMON, flat, is_common
+from hpn.documents.merge import Resolved, resolve
+from hpn.store import Machine, SavedAxis
+from hpn.tables.numbers import read_value
+from hpn.web.columns import common_of, own_of, without_of
+from hpn.web.form import link_reader
+from hpn.web.form.form import Form
+from hpn.web.form.given import FieldProblem, Pairs
+from hpn.web.form.link_writer import to_link
+from hpn.web.form.own_part import carried_over, pairs_of_own, written
+from hpn.web.form.refusals import refusal_of
+from hpn.web.form.rows import TEXT, TOLERANCE
+from hpn.web.form.symbols import BY_NAME, BY_PATH, COMMON_NAMES, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.words.wording import Sentence
+
+Json = dict[str, Any]
+
+WITHOUT, VERSION, OPENED, PLACE = "wo", "v", "opened", "axis"
+LABELS = ("name", "quantity", "note")
+OF_AXIS = frozenset((WITHOUT, VERSION, OPENED, PLACE, *LABELS))
+"""Parameters of an axis beside those of its application: paths that it goes without, its labels, and what it was when
+somebody opened it, as its version and as its own part.
+"""
+
+CHOSEN = ("gear", "order_output", "order_motor")
+"""Parameters that make its ordering code."""
+
+_OWN = {*PHASE_BY_NAME, *MOVE_BY_NAME, *BY_NAME, TEXT, TOLERANCE, WITHOUT}
+_PRESS = re.compile(r"(without|common):([A-Za-z0-9]{1,8})")
+
+
+@dataclass(frozen=True, slots=True)
+class Neighbours:
+    """Axes before and after one in the order of its machine; None at its ends."""
+
+    previous: SavedAxis | None = None
+    next: SavedAxis | None = None
+
+
+@dataclass(frozen=True)
+class AxisView:
+    """An axis with what somebody has typed.
+
+    `labels` are name, quantity and note as typed, `own` its own part and `without` the names of common values that do
+    not hold for it; `typed` are these and the ordering code as pairs, `opened` the same of the axis as it was opened,
+    None where nobody knows that any more, and `version` counts its changes until then.
+    """
+
+    machine: Machine
+    axis: SavedAxis
+    neighbours: Neighbours
+    labels: Mapping[str, str]
+    own: Json
+    resolved: Resolved
+    without: tuple[str, ...]
+    typed: tuple[tuple[str, str], ...]
+    opened: tuple[tuple[str, str], ...] | None
+    version: int
+
+    @property
+    def place(self) -> str:
+        """Address of its page."""
+        return place_of(self.machine.id, self.axis.number)
+
+    @property
+    def key(self) -> str:
+        """What a form says of which axis it is of."""
+        return f"{self.machine.id}/{self.axis.number}"
+
+    @property
+    def at(self) -> int:
+        """Its place in the order, from 1."""
+        return self.machine.order.index(self.axis.number) + 1
+
+    @property
+    def common(self) -> Mapping[str, Any]:
+        """Common values of its machine by the names of links."""
+        found = ((BY_PATH.get(tuple(path.split("."))), value) for path, value in flat(common_of(self.machine)))
+        return {symbol.name: value for symbol, value in found if symbol}
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Paths of the common values that do not hold for it."""
+        return tuple(path for name in self.without if (path := _path_of(name)))
+
+    @property
+    def changed(self) -> bool:
+        """True for an axis that is not as it was opened."""
+        return self.typed != self.opened
+
+    @property
+    def overtaken(self) -> bool:
+        """True where somebody else has saved it since."""
+        return self.version != self.axis.version
+
+    @property
+    def opened_text(self) -> str:
+        """The axis as it was opened, for a form or an address."""
+        return "" if self.opened is None else urlencode(self.opened)
+
+    def link(self, application: Application) -> str:
+        """Address of the axis when its whole application is another one, without gear, pins and ordering code."""
+        own = [pair for pair in self.typed if pair[0] not in (*CHOSEN, *LABELS)]
+        if application != self.resolved.application and self.resolved.application is not None:
+            now, then = (_pairs(to_link(each)) for each in (self.resolved.application, application))
+            own = carried_over(now, then, own, self.common)
+        return self._link_of(own)
+
+    @property
+    def open_link(self) -> str:
+        """The same of an axis that is still open."""
+        return self._link_of([pair for pair in self.typed if pair[0] not in (*CHOSEN, *LABELS)])
+
+    def _link_of(self, own: Pairs) -> str:
+        labels = [pair for pair in self.typed if pair[0] in LABELS]
+        since = [(VERSION, str(self.version)), (OPENED, self.opened_text)]
+        return f"{self.place}?{written([*own, *labels, *since])}"
+
+    def address(self, link: str, tail: str) -> str:
+        """Address for the address bar, which says nothing of an axis that is as it was stored."""
+        as_stored = not self.changed and not self.overtaken and "&pin=" not in tail
+        return self.place if as_stored else link + tail
+
+
+def place_of(id: str, number: int) -> str:
+    """Address of the page of an axis."""
+    return f"/machines/{id}/axes/{number}"
+
+
+def stored_pairs(axis: SavedAxis, catalogue: Catalogue) -> tuple[tuple[str, str], ...]:
+    """An axis as it is kept, as pairs."""
+    labels = {"name": axis.name or "", "quantity": str(axis.quantity), "note": axis.note or ""}
+    names = [symbol.name if (symbol := BY_PATH.get(tuple(path.split(".")))) else path for path in without_of(axis)]
+    code = read_ordering_code(catalogue, axis.ordering_code or "")
+    chosen = {"gear": code.gear.designation, **code.labels} if isinstance(code, OrderingCode) else {}
+    return _state(pairs_of_own(own_of(axis)), names, labels, chosen)
+
+
+def _state(
+    own: Pairs, without: Sequence[str], labels: Mapping[str, str], chosen: Mapping[str, str]
+) -> tuple[tuple[str, str], ...]:
+    left = [(WITHOUT, name) for name in sorted(without)]
+    named = [(name, labels[name]) for name in LABELS if labels[name]]
+    ordered = [(name, chosen[name]) for name in CHOSEN if chosen.get(name)]
+    return (*own, *left, *named, *ordered)
+
+
+def view_of(
+    machine: Machine, axis: SavedAxis, neighbours: Neighbours, pairs: Pairs, catalogue: Catalogue
+) -> tuple[Form, AxisView]:
+    """Form of an axis with what a query says, and the axis with it; without anything of its own as it is stored."""
+    stored = stored_pairs(axis, catalogue)
+    if not any(name in _OWN for name, _ in pairs):
+        pairs = [*(pair for pair in stored if pair[0] not in dict(pairs)), *pairs]
+    pairs, focus = _pressed(pairs)
+    given = dict(reversed(pairs))
+    without = tuple(dict.fromkeys(text for name, text in pairs if name == WITHOUT and _path_of(text)))
+    labels = {name: given.get(name, dict(stored).get(name, "")).strip() for name in LABELS}
+    paths = [path for name in without if (path := _path_of(name))]
+    seen: list[tuple[Json, Resolved]] = []
+
+    def whole(document: Json) -> Json:
+        own = _without_blanks(document)
+        seen[:] = [(own, resolve(own, common_of(machine), paths))]
+        return dict(seen[0][1].whole) or document
+
+    form = link_reader.parse([pair for pair in pairs if pair[0] not in OF_AXIS], whole)
+    own, resolved = seen[0]
+    form = replace(form, focus=focus or form.focus, problems=(*form.problems, *_faults(labels)))
+    chosen = {"gear": form.gear, **_ordered(form, catalogue)}
+    version = int(given[VERSION]) if re.fullmatch(r"[0-9]{1,9}", given.get(VERSION, "")) else axis.version
+    opened = stored if version == axis.version else _opened(given.get(OPENED, ""))
+    typed = _state(pairs_of_own(own), without, labels, chosen)
+    return form, AxisView(machine, axis, neighbours, labels, own, resolved, without, typed, opened, version)
+
+
+def _ordered(form: Form, catalogue: Catalogue) -> Mapping[str, str]:
+    """Labels of the ordering code as typed; the default version of the output counts as none."""
+    return ordering_code(catalogue, catalogue.gears[0], *(form.labels[name] for name in CHOSEN[1:])).labels
+
+
+def _path_of(name: str) -> str | None:
+    """Path of a common value by its symbol; a tolerance is named by its path. None for any other text."""
+    return COMMON_NAMES.get(name) or (name if name not in COMMON and is_common(name) else None)
+
+
+def _opened(text: str) -> tuple[tuple[str, str], ...] | None:
+    return tuple(parse_qsl(text, keep_blank_values=True, max_num_fields=None)) or None
+
+
+def _pressed(pairs: Pairs) -> tuple[Pairs, str | None]:
+    """Pairs after the buttons of common values, and the field to go on from."""
+    focus = None
+    for _, text in [pair for pair in pairs if pair[0] == "do"]:
+        if (press := _PRESS.fullmatch(text)) and press[2] in BY_NAME:
+            name, focus = press[2], f"f-{press[2]}"
+            pairs = [pair for pair in pairs if pair != ("do", text) and pair[0] != name and pair != (WITHOUT, name)]
+            pairs += [(WITHOUT, name)] if press[1] == "without" else []
+    return pairs, focus
+
+
+def _without_blanks(document: Json) -> Json:
+    """Own part of an axis: what a form leaves blank is inherited."""
+    own = {name: value for name, value in document.items() if value not in (None, {}, [])}
+    for name, part in own.items():
+        if isinstance(part, dict):
+            own[name] = {field: value for field, value in part.items() if value not in (None, [])}
+    return {name: value for name, value in own.items() if value != {}}
+
+
+def values_of(labels: Mapping[str, str]) -> Axis:
+    """Labels of an axis as typed; ValidationError where one is wrong."""
+    quantity = read_value(labels["quantity"] or "1", "whole")
+    return Axis.model_validate({"name": labels["name"] or None, "note": labels["note"] or None, "quantity": quantity})
+
+
+def _faults(labels: Mapping[str, str]) -> list[FieldProblem]:
+    if isinstance(said := read_value(labels["quantity"] or "1", "whole"), Sentence):
+        return [FieldProblem("quantity", None, said)]
+    try:
+        values_of(labels)
+    except ValidationError as refused:
+        errors = refused.errors(include_url=False, include_input=False)
+        return [FieldProblem(str(error["loc"][0]), None, refusal_of(error)) for error in errors]
+    return []
+
+
+def _pairs(link: str) -> Pairs:
+    return parse_qsl(link.partition("?")[2], keep_blank_values=True)
