@@ -13,7 +13,7 @@ from hpn.application import Application, InputError, Location
 from hpn.application.faults import REQUIRED, sentences_of
 from hpn.catalogue import Catalogue
 from hpn.engine.allowed import gears_for, with_listed_motor
-from hpn.engine.candidates import Candidate, Reserve, candidates_of
+from hpn.engine.candidates import Candidate, Reserve, WorstCase, candidates_of
 from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import SUITABLE, UNRATED, Evaluation, Worst, evaluate
 from hpn.fleet.axes import Axes, BoolArray, IntArray, cells_of
@@ -255,10 +255,14 @@ def located(row: int, location: Location, sentence: Sentence, code: str) -> Faul
 # --- Candidates -------------------------------------------------------------------------------------------------------
 
 RESERVE = {f"reserve.{name}": name for name in Reserve.__struct_fields__}
-PLAIN = tuple(name for name in Candidate.__struct_fields__ if name not in ("reserve", "checks"))
+WORST = {f"worst.{name}": name for name in WorstCase.__struct_fields__}
+PLAIN = tuple(name for name in Candidate.__struct_fields__ if name not in ("reserve", "worst", "checks"))
 WHOLE, TEXTS = (
     ("ratio", "stages", "rank"),
-    ("designation", "size", "status", "governing_check", "reason", "missing", "shortest_life_of"),
+    (
+        *("designation", "size", "status", "governing_check", "reason", "missing", "shortest_life_of"),
+        *("worst.governing_check", "worst.status"),
+    ),
 )
 
 
@@ -266,7 +270,11 @@ def candidate_fields(axis: pa.DataType) -> pa.Schema:
     """Columns of the candidates, with the row of their axis: those of the reply, without their checks."""
     kinds = {**dict.fromkeys(WHOLE, pa.int64()), **dict.fromkeys(TEXTS, pa.string())}
     return pa.schema(
-        [(ROW, pa.int64()), (AXIS, axis), *((name, kinds.get(name, pa.float64())) for name in (*PLAIN, *RESERVE))]
+        [
+            (ROW, pa.int64()),
+            (AXIS, axis),
+            *((name, kinds.get(name, pa.float64())) for name in (*PLAIN, *RESERVE, *WORST)),
+        ]
     )
 
 
@@ -290,6 +298,10 @@ class _Candidates:
         schema = candidate_fields(axis.type)
         columns += [pa.array([_plain(getattr(row, name)) for row in rows], schema.field(name).type) for name in PLAIN]
         columns += [pa.array([getattr(row.reserve, name) for row in rows], pa.float64()) for name in RESERVE.values()]
+        columns += [
+            pa.array([getattr(row.worst, name, None) for row in rows], schema.field(column).type)
+            for column, name in WORST.items()
+        ]
         return pa.Table.from_arrays(columns, schema=schema)
 
 
