@@ -233,7 +233,9 @@ def test_every_equation_stands_with_its_numbers(made: Make) -> None:
     titles |= {"17.7": "Belastungsgrenze2", "17.8": "Belastungsgrenze3", "17.9": "Anzahl", "17.10": "Lebensdauer"}
     for number, title in titles.items():
         assert f"{number}{title}" in page
-    assert "Tav=" in page and "|n1·t1|" in page  # in symbols too
+    assert "Tav=" in page and "|nj|·tj" in page  # in symbols too
+    for term in ("16415769,1", "156047873", "2171534,09", "174635176"):  # |n| t T^(10/3) of each phase, and their sum
+        assert term in page, term
     for figures in ("=32,0210136Nm≤TA=TN=80Nm", "=1087,66234min⁻¹≤nav(max)", "=1167275,94h", "3066035,52→3066035"):
         assert figures in page, figures
 

@@ -6,7 +6,7 @@ from hpn.account.account import Account, CheckLine
 from hpn.account.readings import Reading
 from hpn.engine.checks import CHECKS
 from hpn.explain.calculation import Comparison, Step, calculation_of
-from hpn.explain.calculation.mathml import compared, in_symbols, result, substituted
+from hpn.explain.calculation.mathml import addition, compared, in_symbols, result, substituted
 from hpn.files.export import Export
 from hpn.files.words import exact_percent, measured
 from hpn.words.reader import Reader
@@ -74,14 +74,29 @@ def _of_step(step: Step, export: Export, reader: Reader) -> Row:
         "number": step.equation or "",
         "title": sentence(reader.text(step.title)),
         "lines": lines,
+        "sums": _sums(step, reader),
         "where": row["where"] or ("" if step.equation else reader.text(N_("Not printed in the handbook."))),
         "notes": [sentence(reader.told(note)) for note in step.notes],
     }
 
 
+def _sums(step: Step, reader: Reader) -> Row | None:
+    """Columns of a step's sums over the phases."""
+    sums = addition(reader, step)
+    if sums is None:
+        return None
+    said = reader.text(N_("Only some of the %(count)s phases are written out; the result includes all of them."))
+    rows = [[str(place), *values] for place, values in sums.rows]
+    return {
+        "heads": sums.heads,
+        "rows": [*rows, ["Σ", *sums.totals]],
+        "note": said % {"count": len(sums.rows) + sums.left_out} if sums.left_out else "",
+    }
+
+
 def _row(code: str) -> Row:
     blank: Row = dict.fromkeys(("number", "limit_formula", "demand", "sign", "limit", "where"), "")
-    return blank | {"code": code, "relation": [], "lines": [], "notes": [], "check": None}
+    return blank | {"code": code, "relation": [], "lines": [], "notes": [], "check": None, "sums": None}
 
 
 def _of_check(check: CheckLine, limit: Comparison | None, reader: Reader) -> Row:

@@ -53,6 +53,7 @@ LABELS = {
     "notices": N_("Notices"),
     "equation": N_("Eq."),
     "bars": N_("0 to 150 %"),
+    "phase": N_("Phase"),
     "utilisation": N_("Utilisation"),
     "open": N_("Open"),
     "page": N_("Page {page} of {pages}"),
