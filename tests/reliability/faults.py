@@ -66,7 +66,7 @@ def sqlite_locked(path: Path) -> Iterator[None]:
 def postgresql_locked(address: str) -> Iterator[None]:
     """Somebody holds the table."""
     with psycopg.connect(address) as connection:
-        connection.execute("LOCK TABLE selections IN ACCESS EXCLUSIVE MODE")
+        connection.execute("LOCK TABLE documents IN ACCESS EXCLUSIVE MODE")
         yield
         connection.rollback()
 

@@ -40,7 +40,7 @@ def test_the_saved_result_is_the_reply_of_select_byte_for_byte(client: TestClien
 
     saved = client.get(f"{ADDRESS}/{save(client)}").content
 
-    assert b'"result":' + reply + b',"today"' in saved
+    assert b'"result":' + reply + b',"label":"saved"' in saved
 
 
 def test_the_application_comes_back_as_it_was_given(client: TestClient) -> None:
