@@ -244,11 +244,14 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group == "metrics"
         elif path.endswith(("/select/batch", "/fleet")) or (path, method) == ("/machines", "POST"):
             assert group == "batch"
-        elif path in ("/api/v1/selections", "/selections", "/machines/saved") and method == "GET":
+        elif path.removeprefix("/api/v1") in ("/selections", "/machines", "/machines/saved") and method == "GET":
             assert group == "listing"
-        elif "/selections" in path or "/machines/" in path:
-            expected = {"GET": "reading", "POST": "writing", "PATCH": "deleting", "DELETE": "deleting"}
-            changes = path.endswith(("/rename", "/delete"))
+        elif path == "/machines/{id}/axes/{number}":  # the workbench on an axis
+            assert group == "calculator"
+        elif "/selections" in path or "/machines" in path:
+            expected = {"GET": "reading", "POST": "writing"} | dict.fromkeys(("PUT", "PATCH", "DELETE"), "deleting")
+            sent_to = ("/rename", "/delete", *(("/change", "/save", "/axes", "/revisions") if method == "POST" else ()))
+            changes = path.endswith(sent_to)
             assert group == ("deleting" if changes else expected[method]), path
         else:
             assert group == "calculator", path

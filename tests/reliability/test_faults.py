@@ -123,7 +123,7 @@ def test_room_that_trials_left_in_one_file_of_a_full_database_is_no_readiness(po
             assert save(client, acknowledged)
             time.sleep(1.1)  # after which readiness is tried anew
         with psycopg.connect(address, autocommit=True) as connection:
-            connection.execute("VACUUM selections")
+            connection.execute("VACUUM documents")
         with faults.full(folder):
             while save(client, acknowledged):
                 assert len(acknowledged) < MOST_SAVES
