@@ -60,7 +60,7 @@ def test_package_says_what_the_reply_says(case: str, catalogue: Catalogue) -> No
     checks = result.get_referable("Checks")
     assert isinstance(checks, model.SubmodelElementCollection)
     for check in export.candidate.checks:
-        known = {name: value for name, value in msgspec.structs.asdict(check).items() if value is not None}
+        known = {name: value for name, value in msgspec.to_builtins(check).items() if value is not None}
         shown = values(checks.get_referable(known.pop("code")))
         assert {name: shown[name] for name in known} == known
         assert set(shown) <= {*known, "unit"}
