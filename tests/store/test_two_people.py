@@ -124,5 +124,5 @@ def test_a_fleet_that_two_save_at_once_has_the_names_of_one_and_the_other_learns
         found = at_once([partial(client.post, place, data={"title": f"of {n}"}) for n in range(3)])
 
         assert sorted(found) == [303, 412, 412]
-        assert f"of {found.index(303)}" in client.get("/machines/saved").text
+        assert f"of {found.index(303)}" in client.get("/machines").text
         assert client.post(place, data={"title": f"of {found.index(303)}"}).status_code == 303  # sent once more
