@@ -130,7 +130,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
 
 
 AXIS = json.dumps(cycle(*[phase(40, 250)] * 2000)).encode()
-"""An axis of a machine. 150,000 unknown names in one hold the loop for 0.2 s beside other work, in its parser: still open."""
+"""An axis of a machine. 150,000 unknown names hold the loop for 0.2 s beside other work: still open."""
 
 
 def of_machines(saved: str) -> Iterator[Hostile]:
