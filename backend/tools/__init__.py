@@ -1,1 +1,1 @@
-"""What helps to make HPN Select and asserts nothing: benchmarks, mutants, texts, pictures, supply."""
+"""Tools that make HPN Select and assert nothing: benchmarks, mutants, texts, pictures, supply."""

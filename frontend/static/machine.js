@@ -93,7 +93,7 @@ async function loadKinds(place) {
   const page = new DOMParser().parseFromString(await answer.text(), "text/html");
   const found = page.getElementById("kinds");
   if (!found) return;
-  // What can be undone so far goes along.
+  // Steps that can be undone go along.
   const past = document.querySelectorAll(".undo [name=past]");
   for (const form of found.querySelectorAll("form")) form.append(...[...past].map((field) => field.cloneNode()));
   place.replaceWith(found);

@@ -32,7 +32,7 @@ def send(client: TestClient, machine: str, *pairs: tuple[str, str], past: Pairs 
 
 
 def past_of(page: str) -> Pairs:
-    """What the button Undo of a page sends."""
+    """Fields that the button Undo of a page sends."""
     form = re.search(r'<form class="undo".*?</form>', page, re.DOTALL)
     return re.findall(r'name="(past)" value="([^"]*)"', form[0]) if form else []
 

@@ -175,7 +175,7 @@ def point(document: Json, ends: Ends, shares: Sequence[float]) -> Json:
 
 
 def _follow(row: Json, names: Sequence[str], value: float, x: float, reaches: bool) -> None:
-    """What goes with a torque or a speed moves by its factor; where the torque may be 0, by what is added."""
+    """Fields that go with a torque or a speed move by its factor; where the torque may be 0, by the addition."""
     for name in names:
         if row.get(name) is not None:
             added = 0.0 if name == "least_torque_Nm" else row[name] + abs(x - value)

@@ -215,7 +215,7 @@ def corners(page: str) -> list[list[str]]:
 
 
 def test_which_load_the_shaft_may_carry_is_answered_at_a_typed_speed_life_and_coefficient(client: TestClient) -> None:
-    """What the page draws is what the API answers, in whichever units it was typed."""
+    """The page draws the answer of the API, in whichever units it was typed."""
     asked = {"speed_rpm": 150, "life_h": 30_000, "load_coefficient": 1.3}
     curves = client.get("/api/v1/bearing-envelopes/20A", params=asked).json()["curves"]
     plain = client.get("/catalogue/HPN-20A-5", params={"at_n": "150", "at_life": "30000", "at_fw": "1.3"}).text

@@ -1,4 +1,4 @@
-"""Whose page it is: by browser, by cookie, never by address."""
+"""Reader of a page: by browser, by cookie, never by address."""
 
 import re
 from collections.abc import Iterator

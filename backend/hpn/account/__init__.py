@@ -1,1 +1,1 @@
-"""What is said of a selection, once: inputs, figures, checks and published figures as sections of lines."""
+"""The account of a selection: inputs, figures, checks and published figures as sections of lines."""

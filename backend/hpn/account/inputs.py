@@ -1,4 +1,4 @@
-"""What was asked: loads and requirements line by line, mechanism, moves and phases."""
+"""The application line by line: loads and requirements, mechanism, moves and phases."""
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
@@ -72,7 +72,7 @@ PHASE_HEAD, MOVE_HEAD = N_("Phase"), N_("Move")
 
 
 def mechanism_of(motion: Motion) -> list[Line]:
-    """What is said of mechanism and start; what has its default is left out."""
+    """Lines of mechanism and start; a default is left out."""
     lines = []
     for path, named in MOTION.items():
         part, _, name = path.rpartition(".")

@@ -134,7 +134,7 @@ class Table:
         return Table(labels, columns, replace(self.names, values=self.names.values[:count]))
 
     def row(self, place: int) -> list[Line]:
-        """What one row says, its name first."""
+        """Texts of one row, its name first."""
         return known(column.head.of(column.values[place]) for column in (self.names, *self.columns))
 
     def values(self) -> Iterator[Mapping[str, Value]]:

@@ -65,7 +65,7 @@ class AxisFault(Reply, frozen=True):
 
 
 class Asked(NamedTuple):
-    """What an axis asks, and the ordering code of the gear that it is to have, if any."""
+    """Resolved application of an axis, and the ordering code of the gear that it is to have, if any."""
 
     resolved: Resolved
     ordering_code: str | None = None

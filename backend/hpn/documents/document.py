@@ -16,7 +16,7 @@ TOO_MANY_PHASES = N_("may have {most} phases and moves in all its axes together,
 
 
 class TitleBlock(Model):
-    """What a document is called."""
+    """Title block of a document."""
 
     title: Title | None = Field(None, description="Title for people.", examples=["Packing line"])
     reference: Title | None = Field(None, description="Your own number, such as an order number.", examples=["4711"])

@@ -25,7 +25,7 @@ RESERVED = N_("is reserved: choose another label")
 
 
 def label_key(label: str) -> str:
-    """What labels are unique by: their case makes no difference."""
+    """Form of a label without its case, which makes no difference between labels."""
     return label.casefold()
 
 

@@ -28,7 +28,7 @@ TEXTS = tuple(name for name in Asked.__dataclass_fields__ if name not in ("numbe
 
 
 class Ends(NamedTuple):
-    """What an input is at both ends of some intervals, by magnitude; `of` are their places."""
+    """Values of an input at both ends of some intervals, by magnitude; `of` are their places."""
 
     of: IntArray
     at_low: FloatArray

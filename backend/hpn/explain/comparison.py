@@ -51,7 +51,7 @@ def _is_close(one: float, other: float, room: float) -> bool:
 
 
 def aligned(*sides: Mapping[K, V]) -> Iterator[tuple[K, tuple[V | None, ...]]]:
-    """What each side has under every key, in the order of the first side and then of the next; None for nothing."""
+    """Values of each side under every key, in the order of the first side and then of the next; None for nothing."""
     for key in dict.fromkeys(key for side in sides for key in side):
         yield key, tuple(side.get(key) for side in sides)
 
@@ -127,7 +127,7 @@ def checks_of(*accounts: Account) -> list[CheckRow]:
 
 
 def _matched(sides: Sequence[Mapping[str, V]]) -> Iterator[tuple[V | None, ...]]:
-    """What each side has under every code; what the first lacks stands behind what it follows on its own side."""
+    """Items of each side under every code; one that the first lacks stands behind what it follows on its own side."""
     order = list(sides[0])
     for side in sides[1:]:
         place, known = 0, set(order)

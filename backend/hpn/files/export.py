@@ -81,7 +81,7 @@ class Export:
 
     @cached_property
     def account(self) -> Account:
-        """What is said of the reported gear."""
+        """Account of the reported gear."""
         return Account(self.selection, self.candidate, self.application, self.figures)
 
     @cached_property

@@ -33,7 +33,7 @@ MOST_BROKEN = 100_000
 
 MOST_SHOWN = 60
 Reason = tuple[Sentence, str]
-"""What would be right, and a code for programs."""
+"""Sentence that says what would be right, and a code for programs."""
 
 OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 BOM = b"\xef\xbb\xbf"

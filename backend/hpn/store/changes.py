@@ -39,7 +39,7 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What is to change of a document in version `version`.
+    """Changes of a document that is in version `version`.
 
     `values` are columns of its title block and common values; `order` the numbers of the axes that are there. Axes that
     change, are answered anew or go are named with the version that was seen; those that come back by their numbers.

@@ -20,7 +20,7 @@ class Once(NamedTuple):
 
 
 class Made(NamedTuple):
-    """What a key has made: a document, or a part of one."""
+    """Result of a key: a document, or a part of one."""
 
     document: str
     part: str | None
@@ -34,7 +34,7 @@ async def insert_new(connection: AsyncConnection, table: Table, row: dict[str, A
 
 
 async def take(connection: AsyncConnection, key: str, digest: str, document: str) -> Made | None:
-    """What the key has made before; None where it is this transaction's, which now makes it for a document.
+    """Earlier result of the key; None where it is this transaction's, which now makes it for a document.
 
     The insertion waits for any other transaction that has the key in hand. Raises KeyReusedError and KeySpentError; the
     caller then rolls the transaction back.
@@ -46,7 +46,7 @@ async def take(connection: AsyncConnection, key: str, digest: str, document: str
 
 
 async def made_by(connection: AsyncConnection, key: str, digest: str) -> Made | None:
-    """What a key has made; None for a new one. Raises as `take`."""
+    """Result of a key; None for a new one. Raises as `take`."""
     c = idempotency_keys.c
     found = select(c.digest, c.document, c.part, c.deleted).where(c.key_sha256 == hash_of(key))
     held = (await connection.execute(found)).one_or_none()

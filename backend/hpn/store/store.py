@@ -73,7 +73,7 @@ class _Frozen(msgspec.Struct):
 
     @property
     def head(self) -> dict[str, Any]:
-        """What its line in the list was."""
+        """Its line in the list before."""
         (axis,) = self.axes
         block = {"title": self.title, "reference": self.reference, "author": self.author}
         return block | msgspec.structs.asdict(axis.answer) | {"ordering_code": axis.ordering_code}
@@ -83,7 +83,7 @@ _frozen = msgspec.json.Decoder(_Frozen).decode
 
 
 class Store(Transactions):
-    """What is saved. It is durable once the function that saves it has returned. Nothing is connected before it is
+    """Saved documents. One is durable once the function that saves it has returned. Nothing is connected before it is
     needed.
     """
 
@@ -259,7 +259,7 @@ class Store(Transactions):
         return await self._write(lambda connection: change(connection, id, made, limits, once))
 
     async def made_by(self, once: Once) -> Made | None:
-        """What an idempotency key has made; None for a new one. Raises as `save`."""
+        """Document that an idempotency key has made; None for a new one. Raises as `save`."""
         async with self._reading() as connection:
             return await made_by(connection, once.key, once.digest)
 

@@ -114,7 +114,7 @@ async def apply(
 
 
 async def made_before(request: Request, once: Once) -> str | None:
-    """What an idempotency key has made of its document, whatever state the retry names; Problem 422 and 410."""
+    """Answer that an idempotency key has made of its document, whatever state the retry names; Problem 422 and 410."""
     made = await guarded(request.app.state.store.made_by(once))
     return None if made is None else made.part or "[]"
 

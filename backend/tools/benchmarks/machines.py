@@ -22,7 +22,7 @@ ACTIONS: Mapping[str, str] = {
     "open": "/api/v1/machines/{id}/axes/{number}",
     "save": "/api/v1/machines/{id}/axes/{number}",
 }
-"""What is done with a machine, and its address."""
+"""Actions on a machine, and their addresses."""
 
 
 def measure(servers: Mapping[str, Server]) -> dict[str, Any]:

@@ -52,7 +52,7 @@ class DifferencesExport:
 
     @cached_property
     def differences(self) -> DocumentDifferences:
-        """What differs."""
+        """Differences of the two documents."""
         return differences(*self.documents, self.catalogues)
 
     @cached_property
@@ -102,7 +102,7 @@ def used(axis: FrozenAxis | None, reader: Reader) -> str:
 
 
 def effect(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None], reader: Reader) -> str:
-    """What the differences of an axis do to it, in words."""
+    """Effect of the differences on an axis, in words."""
     return reader.told(_effect(axis, sides, reader))
 
 

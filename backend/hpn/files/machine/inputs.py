@@ -21,7 +21,7 @@ AXIS = {
     "reference": Named(N_("Reference")),
     "author": Named(N_("Author")),
 }
-"""What an axis or a document has beside its application."""
+"""Names of the fields of an axis or a document beside its application."""
 
 PHASE, MOVE = N_("{input}, phase {number}"), N_("{input}, move {number}")
 

@@ -52,7 +52,7 @@ def gear_phrase(axis: FrozenAxis, reader: Reader) -> str:
 
 
 def faults_of(axis: FrozenAxis, reader: Reader) -> list[str]:
-    """What is wrong with an open axis, each with its place."""
+    """Faults of an open axis, each with its place."""
     found = axis.answer.faults[:MOST_FAULTS]
     return [f"{reader.told(label_of(fault.pointer))}: {reader.text(fault.detail)}" for fault in found]
 

@@ -98,7 +98,7 @@ def frame(heading: Heading, reader: Reader) -> dict[str, Any]:
 
 
 def parts(export: Export, reader: Reader) -> dict[str, Any]:
-    """What the template sets of the selection itself."""
+    """Content that the template sets of the selection itself."""
     selection, account = export.selection, export.account
     on_motor, pictures = reader.told(on_motor_torques(selection.notices)), plots.pictures_of(export, reader)
     return asked(export, reader) | {

@@ -65,7 +65,7 @@ Cell = float | str | None
 
 
 class Titled(Protocol):
-    """What a page of a workbook says of its content: title block, when it was saved, and its link."""
+    """Head and foot of a workbook's pages: title block, time of saving and link."""
 
     @property
     def heading(self) -> Heading:

@@ -116,7 +116,7 @@ async def read_differences(
     before: Annotated[str, Query(alias="from", max_length=20, description="Label of a revision, now or today.")],
     after: Annotated[str, Query(alias="to", max_length=20, description="Label of a revision, now or today.")],
 ) -> Response:
-    """What differs between two revisions, a revision and the working copy (`now`), or a state and what today's
+    """Differences between two revisions, a revision and the working copy (`now`), or a state and what today's
     catalogue and engine say to it (`today`); by axis, those with another verdict first.
     """
     if label_key(before) == label_key(after) == TODAY:

@@ -1,4 +1,4 @@
-"""Whose request it is: the reader's language and units from cookies and browser, and the form that changes them.
+"""The reader behind a request: language and units from cookies and browser, and the form that changes them.
 
 An address never says anything about its reader, so that a shared link shows each reader their own language and units.
 """

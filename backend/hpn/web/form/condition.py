@@ -52,7 +52,7 @@ class Condition:
 
     @property
     def tail(self) -> str:
-        """What was typed as the end of an address, in the units of links."""
+        """The typed condition as the end of an address, in the units of links."""
         typed = [field.name for field in self.fields if field.text.strip() and not field.problem]
         return "".join(f"&{name}={getattr(self.query, FIELDS[name]):.12g}" for name in typed)
 

@@ -35,7 +35,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """What differs, and the links of the three ways on; none to both together where nobody knows what was opened."""
+    """Differences, and the links of the three ways on; none to both together where nobody knows what was opened."""
 
     lines: tuple[Difference, ...]
     known: bool

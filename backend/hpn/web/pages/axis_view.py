@@ -78,7 +78,7 @@ class AxisView:
 
     @property
     def key(self) -> str:
-        """What a form says of which axis it is of."""
+        """Hidden fields by which a form names its axis."""
         return f"{self.machine.id}/{self.axis.number}"
 
     @property

@@ -205,7 +205,7 @@ WORDS: dict[str, Any] = {
     "example_head": EXAMPLE_HEAD,
     "example_axes": EXAMPLE_AXES,
 }
-"""What the form for a table, and the example beside it, are made of."""
+"""Parts of the form for a table, and of the example beside it."""
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
 router.add_api_route(ADDRESS, upload, methods=["POST"], dependencies=[admit("batch")])

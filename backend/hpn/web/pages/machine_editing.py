@@ -42,7 +42,7 @@ class Sent:
 
     @classmethod
     def of(cls, pairs: Sequence[tuple[str, str]]) -> Self:
-        """What the fields of a form say; what can't be is left out."""
+        """Values of a form's fields; one that can't be is left out."""
         given = dict(pairs)
         marks = [text.partition(":") for name, text in pairs if name == "axis"]
         seen = {int(n): int(v) for n, _, v in marks if is_number(n) and is_number(v)}
@@ -67,7 +67,7 @@ def is_number(text: str) -> bool:
 
 @dataclass(frozen=True)
 class Editing:
-    """What the page says of a change: its form as sent, effect, problems, and what can be undone."""
+    """A change as the page shows it: its form as sent, effect, problems, and what can be undone."""
 
     sent: Sent = field(default_factory=Sent)
     common: Form | None = None

@@ -22,7 +22,7 @@ MOST_REMEDIES = 5
 
 
 class Opened(NamedTuple):
-    """What the row of an axis says beyond its columns: its link, why it is open, and what would make its gear fit."""
+    """Content of an axis's row beyond its columns: its link, why it is open, and what would make its gear fit."""
 
     link: str = ""
     reasons: tuple[Reason, ...] = ()

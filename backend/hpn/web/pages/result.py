@@ -94,7 +94,7 @@ class Result:
 
     @cached_property
     def account(self) -> Account:
-        """What is said of the chosen candidate."""
+        """Account of the chosen candidate."""
         return Account(self.selection, self.chosen, self.application, self.catalogue)
 
     @property

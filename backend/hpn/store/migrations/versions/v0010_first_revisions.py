@@ -119,7 +119,7 @@ LABEL, SAVED = re.compile(r"[A-Za-z0-9._-]{1,20}"), "saved"
 
 
 def _first_revision(row: Any, moment: datetime, axes: list[Json], result: bytes | None = None) -> Json:
-    """What was saved, under its own revision where that can be a label."""
+    """First revision of a saved selection, under its own label where that can be a label."""
     text = row.revision or ""
     fits = LABEL.fullmatch(text) and text.strip(".") and text.casefold() not in ("now", "today", SAVED)
     label = text if fits else SAVED
