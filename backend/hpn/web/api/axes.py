@@ -89,13 +89,7 @@ REFUSED = (400, 403, 404, 408, 412, 413, 415, 422)
     operation_id="addAxes",
     summary="Add axes",
     status_code=201,
-    openapi_extra=schemas.request_body(SentAxes)
-    | {
-        "parameters": [
-            schemas.header("Idempotency-Key", "Makes a retry safe."),
-            schemas.header("If-Match", "Tag of the machine."),
-        ]
-    },
+    openapi_extra=schemas.request_body(SentAxes) | schemas.ONCE_OF_STATE,
     response_model=replies.NumbersReply,
     responses=schemas.answers(*(*REFUSED, 410), status=201, headers=schemas.headers("Location", "ETag")),
 )

@@ -42,17 +42,9 @@ router = APIRouter(prefix=f"{ADDRESS}/{{id}}", tags=["Machines"])
     operation_id="saveRevision",
     summary="Freeze a revision",
     status_code=201,
-    openapi_extra=schemas.request_body(RevisionBlock)
-    | {
-        "parameters": [
-            schemas.header("Idempotency-Key", "Makes a retry safe."),
-            schemas.header("If-Match", "Tag of the machine."),
-        ]
-    },
+    openapi_extra=schemas.request_body(RevisionBlock) | schemas.ONCE_OF_STATE,
     response_model=RevisionReply,
-    responses=schemas.answers(
-        *(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=schemas.headers("Location", "ETag")
-    ),
+    responses=schemas.FREEZES,
 )
 async def save_revision(request: Request, id: schemas.Id) -> Response:
     """Freezes the working copy under a label: own, inherited and resolved values and answers. It never changes."""

@@ -220,3 +220,15 @@ def header(name: str, description: str) -> dict[str, Any]:
 IF_NONE_MATCH = {
     "parameters": [header("If-None-Match", "Tag of the version that the client has: 304 if it is current.")]
 }
+
+
+ONCE_OF_STATE: dict[str, Any] = {
+    "parameters": [
+        header("Idempotency-Key", "Makes a retry safe."),
+        header("If-Match", "Tag of the state that it is made of."),
+    ]
+}
+"""Headers of a request that is made once, of one state of a document."""
+
+FREEZES = answers(*(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=headers("Location", "ETag"))
+"""Answers to freezing a revision, of a machine or of a selection."""

@@ -46,17 +46,9 @@ class SelectionRevision(RevisionBlock):
     operation_id="saveSelectionRevision",
     summary="Freeze a revision of a selection",
     status_code=201,
-    openapi_extra=schemas.request_body(SelectionRevision)
-    | {
-        "parameters": [
-            schemas.header("Idempotency-Key", "Makes a retry safe."),
-            schemas.header("If-Match", "Tag of the selection."),
-        ]
-    },
+    openapi_extra=schemas.request_body(SelectionRevision) | schemas.ONCE_OF_STATE,
     response_model=RevisionReply,
-    responses=schemas.answers(
-        *(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=schemas.headers("Location", "ETag")
-    ),
+    responses=schemas.FREEZES,
 )
 async def save_revision(request: Request, id: schemas.Id) -> Response:
     """Calculates an application and freezes it with its whole result as the next revision, which never changes."""
