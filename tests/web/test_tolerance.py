@@ -7,7 +7,7 @@ from hpn.application import Application
 from hpn.web.door.bodies import pairs_of
 from hpn.web.form import link_reader
 from hpn.web.form.link_writer import to_link
-from tests.build import TURNING, Json, worked_example
+from tests.build import TURNING, Json, cycle, phase, worked_example
 
 PATH = "/api/v1/select"
 STOP = "emergency_stop.torque_Nm"
@@ -68,6 +68,25 @@ def test_the_worst_case_has_a_limit_of_its_own(api: TestClient) -> None:
 
     assert reply["tolerance"]["holds"]
     assert select(api, reply["tolerance"]["case"])["selected"] == reply["selected"]  # judged by 1, as here
+
+
+LEVER: Json = cycle(
+    phase(5, 100),
+    output_load={"radial_N": 350, "radial_position_mm": 40},  # x_c is not known: 350 N at the centre are a lower bound
+    tolerances={"output_load.radial_N": {"percent": 25}},
+)
+
+
+@pytest.mark.parametrize(("u", "of_worst"), [(0.8, 1.0), (1.0, 0.8)])
+def test_a_lower_bound_passes_no_worst_case(api: TestClient, u: float, of_worst: float) -> None:
+    """It fails above the limit of the worst case, and says nothing below; u is of the nominal case alone."""
+    asked = {"sizes": ["11A"], "utilisation": u, "worst_case_utilisation": of_worst}
+    nominal = select(api, LEVER | {"requirements": asked})["candidates"][0]
+    by_worst = select(api, LEVER | {"requirements": asked | {"over_tolerance": True}})["candidates"][0]
+
+    assert nominal["status"] == "unrated"
+    fails = 350 * 1.25 / 480 > of_worst  # F_R,dyn(max) of HPN-11A is 480 N
+    assert nominal["worst"]["status"] == by_worst["status"] == ("unsuitable" if fails else "unrated")
 
 
 def test_a_share_of_samples_is_an_interval(api: TestClient) -> None:

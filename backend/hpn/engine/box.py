@@ -142,6 +142,8 @@ class Box:
         asked, count = self.duty.asked, len(points)
         numbers = dict(zip(asked.numbers, np.repeat(self._table, count, axis=1), strict=True))
         numbers |= {path: points[:, place, None] for path, place in self.numbers.items()}
+        u, allowed = (numbers[f"requirements.{name}"] for name in ("utilisation", "worst_case_utilisation"))
+        numbers["requirements.utilisation"] = np.where(np.isnan(allowed), u, allowed)
         by_size = {size: np.repeat(values, count, axis=0) for size, values in asked.shaft_centres_mm.items()}
         texts = {name: np.repeat(getattr(asked, name), count, axis=0) for name in TEXTS}
         return Asked(numbers, **texts, shaft_centres_mm=by_size)
