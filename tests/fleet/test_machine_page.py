@@ -62,6 +62,17 @@ def test_rows_show_own_values_quantity_and_gear_and_the_head_counts_gears(client
     assert "1 axis without a gear" in text_of(page) and "4 gears" in text_of(page)
 
 
+def test_an_axis_that_does_not_hold_over_its_tolerance_says_so_and_is_counted(client: TestClient) -> None:
+    stop = {"emergency_stop": {"torque_Nm": 200}, "requirements": {"ratios": [5]}}
+    wide = {**BELT, **stop, "tolerances": {"emergency_stop.torque_Nm": {"percent": 40}}}
+    axes = [{"name": "Wide", "application": wide}, {"name": "Exact", "application": {**BELT, **stop}}]
+    page = client.get(client.post("/api/v1/machines", json={"axes": axes}).json()["url"]).text
+
+    assert "not over the whole tolerance" in row(page, "Wide")
+    assert "not over the whole tolerance" not in row(page, "Exact")
+    assert "1 not over the whole tolerance" in text_of(page) and "2 suitable" in text_of(page)
+
+
 def test_an_axis_without_a_gear_says_what_would_mend_it_and_an_open_one_what_is_missing(
     client: TestClient, machine: str
 ) -> None:

@@ -87,6 +87,39 @@ def test_the_title_page_says_what_the_answers_say(
     assert LINK in title.replace(" ", "") and "HB-2431" in title
 
 
+BEYOND = worked_example(tolerances={"emergency_stop.torque_Nm": {"percent": 40}})
+"""An application whose selected gear passes at 200 Nm, and fails at 280 Nm."""
+
+
+def test_the_title_page_names_axes_that_do_not_hold_over_their_tolerance(catalogue: Catalogue) -> None:
+    within = worked_example(tolerances={"emergency_stop.torque_Nm": {"percent": 20}})
+    axes = [axis("near", within), axis("far", BEYOND), axis("exact", worked_example())]
+    export = export_of(frozen(axes, catalogue), catalogue)
+    summary = content(export, pages_of(export.document), ENGLISH)["summary"]
+
+    assert [each.answer.status for each in export.document.axes] == ["suitable"] * 3
+    assert summary["word"] == "1 suitable as given, but not over the whole tolerance: 2"
+    assert summary["status"] == "unrated"
+
+
+def test_the_page_of_an_axis_says_that_its_gear_fails_inside_the_tolerance(catalogue: Catalogue) -> None:
+    export = export_of(frozen([axis("far", BEYOND)], catalogue), catalogue)
+    (page,) = content(export, pages_of(export.document), ENGLISH)["pages"]
+
+    told = "".join(map(str, page["selection"]["verdict"]["text"]))
+    assert "Fails inside the tolerance" in told
+
+
+def test_kinds_are_counted_by_designation(catalogue: Catalogue) -> None:
+    """Two codes of one gear are two lines of the order and one kind, as the fewest kinds count them."""
+    gear = select(Application.model_validate(worked_example()), catalogue).selected
+    axes = [axis("bare", worked_example()), axis("coded", worked_example(), ordering_code=f"{gear}-J6-BH-AF1")]
+    document = frozen(axes, catalogue)
+
+    assert len(order_of(document.axes, catalogue).gears) == 2
+    assert summary_of(document, catalogue).kinds == 1
+
+
 @pytest.mark.parametrize("reader", [ENGLISH, GERMAN], ids=["en", "de"])
 def test_the_table_has_every_axis_with_gear_check_utilisation_and_life(
     line: Frozen, pages: Callable[[Reader], list[str]], reader: Reader

@@ -35,6 +35,11 @@ class GearOrder(Reply, frozen=True):
     gears: Annotated[tuple[OrderedGear, ...], Field(description="Gears, most first.")]
     weight_kg: Annotated[float | None, Field(description="Mass of all; null where that of one is not known.")]
 
+    @property
+    def kinds(self) -> int:
+        """Number of kinds of gears, by their designations."""
+        return len({gear.designation for gear in self.gears})
+
 
 def gears_of(axes: Iterable[Placed], catalogue: Catalogue) -> GearOrder:
     """List of the gears of axes: that of the ordering code, else the selected one."""

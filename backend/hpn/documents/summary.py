@@ -23,7 +23,7 @@ class Summary(Reply, frozen=True):
     unrated: Annotated[int, Field(description="Axes whose gear can’t be rated.")]
     open: Annotated[int, Field(description="Axes without an answer.")]
     gears: Annotated[int | None, Field(description="Number of gears to order; null where the catalogue is not kept.")]
-    kinds: Annotated[int | None, Field(description="Number of their ordering codes; null likewise.")]
+    kinds: Annotated[int | None, Field(description="Number of their designations; null likewise.")]
     weight_kg: Annotated[float | None, Field(description="Mass of all gears; null where that of one is not known.")]
     utilisation: Annotated[float | None, Field(description="Largest utilisation of a suitable gear.")]
     utilisation_axis: Annotated[int | None, Field(description="Number of its axis.")]
@@ -37,6 +37,11 @@ class Summary(Reply, frozen=True):
 def gear_of(axis: FrozenAxis) -> str | None:
     """Designation of an axis's gear: that of its ordering code, else the selected one; None for an axis without one."""
     return axis.answer.selected if axis.ordering_code is None else axis.answer.designation
+
+
+def failing_inside(axes: Iterable[FrozenAxis]) -> tuple[int, ...]:
+    """Numbers of the axes whose gear is suitable as given, and does not hold over the whole tolerance."""
+    return tuple(axis.number for axis in axes if axis.answer.status == "suitable" and axis.answer.holds is False)
 
 
 def order_of(axes: Iterable[FrozenAxis], catalogue: Catalogue) -> GearOrder:
@@ -61,7 +66,7 @@ def summary_of(document: Frozen, catalogue: Catalogue | None) -> Summary:
         unrated=counts["unrated"],
         open=counts["open"],
         gears=None if order is None else sum(gear.quantity for gear in order.gears),
-        kinds=None if order is None else len(order.gears),
+        kinds=None if order is None else order.kinds,
         weight_kg=None if order is None else order.weight_kg,
         utilisation=most.answer.utilisation if most else None,
         utilisation_axis=most.number if most else None,

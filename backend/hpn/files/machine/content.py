@@ -6,7 +6,7 @@ from typing import Any
 from hpn.account.readings import life_of
 from hpn.documents.common import flat
 from hpn.documents.revision import FrozenAxis
-from hpn.documents.summary import gear_of
+from hpn.documents.summary import failing_inside, gear_of
 from hpn.files.machine.axis_page import axis_page
 from hpn.files.machine.export import MOST_PAGES, MachineExport, Pages, exports_of
 from hpn.files.machine.inputs import line_of
@@ -49,6 +49,7 @@ NOT_FROZEN = N_("The working copy: what the link shows changes with it.")
 
 SUITABLE = N_("of {count} axes suitable")
 WITHOUT, OPEN = N_("{count} without a suitable gear"), N_("{count} open")
+NOT_OVER = N_("{count} suitable as given, but not over the whole tolerance: {axes}")
 ALL_SOUND = N_("every axis has a suitable gear")
 NOT_SUITABLE = N_("no suitable gear. Nearest {gear}, {percent}; {check}")
 ORDERED = N_("{gear} is ordered and not suitable: {percent}; {check}")
@@ -108,9 +109,11 @@ def _summary(export: MachineExport, reader: Reader) -> dict[str, Any]:
     lacking = summary.unsuitable + summary.unrated
     told = [Sentence(WITHOUT, {"count": lacking})] if lacking else []
     told += [Sentence(OPEN, {"count": summary.open})] if summary.open else []
+    inside = failing_inside(export.document.axes)
+    told += [Sentence(NOT_OVER, {"count": len(inside), "axes": ranges(inside)})] if inside else []
     most = next((axis for axis in export.document.axes if axis.number == summary.utilisation_axis), None)
     return {
-        "status": "unsuitable" if lacking else "unrated" if summary.open else "suitable",
+        "status": "unsuitable" if lacking else "unrated" if summary.open or inside else "suitable",
         "word": " · ".join(map(reader.told, told or [Sentence(ALL_SOUND)])),
         "count": reader.exact(summary.suitable),
         "of": reader.told(Sentence(SUITABLE, {"count": reader.exact(summary.axes)})),
@@ -199,7 +202,7 @@ def _gears(export: MachineExport, reader: Reader) -> dict[str, Any]:
                 *(reader.with_unit(reader.figure(mass, "kg"), "kg") for mass in masses),
             ]
         )
-    kinds = reader.told(Sentence(KINDS, {"count": reader.exact(len(order.gears))}))
+    kinds = reader.told(Sentence(KINDS, {"count": reader.exact(order.kinds)}))
     sums = (sum(len(gear.axes) for gear in order.gears), sum(gear.quantity for gear in order.gears))
     whole = reader.with_unit(reader.figure(order.weight_kg, "kg"), "kg")
     return {

@@ -6,6 +6,7 @@ from typing import Any
 from hpn.account.readings import shortest_life
 from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.remedy import remedy_of
+from hpn.engine.tolerance_words import tolerance_of
 from hpn.engine.tried import needed_of
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
@@ -52,7 +53,9 @@ def verdict(export: Export, reader: Reader) -> dict[str, Any]:
     candidate, code = export.candidate, export.candidate.governing_check
     limit = export.account.torque_limit
     lines = limit.lines if limit.warns or candidate.status == "suitable" else ()
-    said = [reader.told(sentence) for sentence in (*_said(export, reader), *lines)]
+    of_worst = tolerance_of(candidate)
+    told = (*_said(export, reader), *((of_worst,) if of_worst else ()), *lines)
+    said = [reader.told(sentence) for sentence in told]
     return {
         "gear": candidate.designation,
         "word": reader.text(VERDICTS[candidate.status]),

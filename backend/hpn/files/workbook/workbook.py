@@ -3,6 +3,7 @@
 from io import BytesIO
 
 from hpn.account.readings import Reading
+from hpn.engine.tolerance_words import tolerance_of
 from hpn.files.export import Export
 from hpn.files.words import catalogue_version
 from hpn.files.workbook.candidates import write_candidates
@@ -122,5 +123,7 @@ def _sides(sheet: Sheet, reading: Reading) -> tuple[Cell, Cell]:
 
 def _write_notes(sheet: Sheet) -> None:
     sheet.heads(N_("Assumptions and notes"))
+    if of_worst := tolerance_of(sheet.export.candidate):
+        sheet.note(sheet.reader.told(of_worst), WIDTHS)
     for notice in sheet.export.selection.notices:
         sheet.note(sheet.reader.told(notice.sentence), WIDTHS)

@@ -51,6 +51,12 @@ class Row(NamedTuple):
         return status
 
     @property
+    def fails_inside(self) -> bool:
+        """True where its gear is suitable as given, and does not hold over the whole tolerance."""
+        holds = self.axis.answer["holds"]
+        return self.status == "suitable" and holds is not None and not holds
+
+    @property
     def gear(self) -> str | None:
         """Designation that the figures are of; None for an open axis."""
         gear: str | None = self.axis.answer["designation"]
@@ -258,6 +264,11 @@ class MachineView:
             found[row.status] += 1
         return found
 
+    @cached_property
+    def failing_inside(self) -> int:
+        """Number of axes whose gear is suitable as given, and does not hold over the whole tolerance."""
+        return sum(row.fails_inside for row in self.all)
+
     def showing(self, show: str) -> int:
         """Number of axes that a filter shows."""
         if show == "changed":
@@ -283,7 +294,7 @@ class MachineView:
     @cached_property
     def kinds(self) -> int:
         """Number of kinds of gears."""
-        return len({gear.designation for gear in self.order.gears})
+        return self.order.kinds
 
     @cached_property
     def quantity(self) -> int:
