@@ -5,7 +5,8 @@ from pydantic import ValidationError
 
 from hpn.application import Application
 from hpn.application.faults import faults_of
-from tests.build import TURNING, Json, cycle, phase, worked_example
+from hpn.catalogue import Catalogue
+from tests.build import TURNING, Json, answer, candidate, cycle, phase, worked_example
 
 VARYING = cycle(phase(40, 250, 1, peak_torque_Nm=60, rms_torque_Nm=50), phase(0, 100), pause_s=1)
 
@@ -61,6 +62,31 @@ def test_a_peak_with_a_tolerance_of_its_own_stays_above_its_torque() -> None:
     tolerances = {"phases.0.peak_torque_Nm": {"percent": 30}, "torque_Nm": {"percent": 10}}
     assert faults(VARYING, tolerances)[0] == ("phases.0.peak_torque_Nm", "tolerance_held")
     Application.model_validate(VARYING | {"tolerances": {"phases.0.peak_torque_Nm": {"percent": 10}}})
+
+
+SYMMETRIC = {
+    "a torque from -60 to 60": phase(20, 250, radial_N=100),
+    "a peak that is 80 more at both ends": phase(20, 250, peak_torque_Nm=40, radial_N=100),
+}
+
+
+@pytest.mark.parametrize("own", SYMMETRIC.values(), ids=list(SYMMETRIC))
+def test_magnitudes_alike_at_both_ends_are_worse_than_between_them(own: Json, catalogue: Catalogue) -> None:
+    """The worst case is that of an application typed at an end."""
+    tolerances = {
+        "torque_Nm": {"minus": {"absolute": 80}, "plus": {"absolute": 80 if "peak_torque_Nm" in own else 40}},
+        "radial_N": {"minus": {"absolute": 400}, "plus": {"absolute": 200}},  # from -300 N to 300 N
+    }
+    peak = {"peak_torque_Nm": 120} if "peak_torque_Nm" in own else {}
+    typed = cycle(phase(-60, 250, radial_N=300, **peak), requirements={"sizes": ["20A"]})
+    (first, *_) = answer(cycle(own, requirements={"sizes": ["20A"]}, tolerances=tolerances), catalogue)["candidates"]
+    at_end = candidate(answer(typed, catalogue), first["designation"])
+
+    for code in ("repeated_peak_torque", "output_bearing_load"):
+        (toleranced,) = [one for one in first["checks"] if one["code"] == code]
+        (corner,) = [one for one in at_end["checks"] if one["code"] == code]
+        assert toleranced["exact"]
+        assert toleranced["worst"] == pytest.approx(corner["utilisation"], rel=1e-12)
 
 
 WRONG = [{}, {"percent": 1, "absolute": 1}, {"percent": 1, "plus": {"percent": 1}}, {"percent": -1}]

@@ -64,6 +64,7 @@ def need_of(box: Box, check: Check) -> Need:
     both: list[int] = []
     weights: list[str] = []
     set_high = np.zeros(len(point), np.int8)
+    alike = np.zeros(len(point), np.bool_)
     for name, dependence in (check.over or {}).items():
         ends = box.ends.get(name)
         if ends is None or not len(ends.of):
@@ -76,11 +77,14 @@ def need_of(box: Box, check: Check) -> Need:
         elif dependence == "ends":
             both += ends.of.tolist()
         else:
+            equal = ends.at_high == ends.at_low
             rises = (ends.at_high >= ends.at_low) == (dependence == "rising")
-            way = np.where(ends.at_high == ends.at_low, set_high[ends.of], np.where(rises, 1, -1)).astype(np.int8)
+            way = np.where(equal, set_high[ends.of], np.where(rises, 1, -1)).astype(np.int8)
+            alike[ends.of[equal]] = True
             if (set_high[ends.of] * way < 0).any():
                 is_exact = False  # two figures of a phase whose worst lies at different ends
             set_high[ends.of] = way
+    set_high[alike & (set_high == 0)] = 1  # magnitudes at both ends are alike, and less between them
     point = np.where(set_high > 0, box.high, np.where(set_high < 0, box.low, point))
     points = point[None]
     if both and len(both) <= MOST_ENDS:
