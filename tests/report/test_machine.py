@@ -110,6 +110,19 @@ def test_the_page_of_an_axis_says_that_its_gear_fails_inside_the_tolerance(catal
     assert "Fails inside the tolerance" in told
 
 
+def test_the_shortest_life_and_the_largest_utilisation_are_those_of_suitable_axes(
+    line: Frozen, catalogue: Catalogue
+) -> None:
+    """Two ways that agree: the summary, and the answers sorted by themselves."""
+    summary, sound = summary_of(line, catalogue), [one for one in line.axes if one.answer.status == "suitable"]
+    lives = sorted((one.answer.shortest_life_h, one.number) for one in sound if one.answer.shortest_life_h is not None)
+    used = sorted((one.answer.utilisation or 0.0, -one.number) for one in sound)
+
+    assert len(lives) > 1 and lives[0][0] < lives[-1][0]
+    assert (summary.shortest_life_h, summary.shortest_life_axis) == lives[0]
+    assert (summary.utilisation, summary.utilisation_axis) == (used[-1][0], -used[-1][1])
+
+
 def test_kinds_are_counted_by_designation(catalogue: Catalogue) -> None:
     """Two codes of one gear are two lines of the order and one kind, as the fewest kinds count them."""
     gear = select(Application.model_validate(worked_example()), catalogue).selected
