@@ -10,7 +10,7 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.evaluation import SUITABLE, BoolArray
-from hpn.engine.kinds import NO_GEAR, Axes, Step, fewest_kinds
+from hpn.engine.kinds import NO_GEAR, Choices, LightestSet, fewest_kinds
 from hpn.engine.selection import Judged
 from hpn.physics.equations import FloatArray
 from hpn.words.reply import Reply
@@ -25,7 +25,7 @@ class Sought(NamedTuple):
     designation: str | None
 
 
-class Change(Reply, frozen=True, rename={"gear_from": "from", "gear_to": "to"}):
+class GearChange(Reply, frozen=True, rename={"gear_from": "from", "gear_to": "to"}):
     """One axis that takes another gear."""
 
     axis: Annotated[int, Field(description="Number of the axis.")]
@@ -42,7 +42,7 @@ class KindsStep(Reply, frozen=True):
     gears: Annotated[tuple[str, ...], Field(description="Their designations, in the order of the catalogue.")]
     weight_kg: Annotated[float, Field(description="Mass of the gears of every axis, times its quantity.")]
     proven: Annotated[bool, Field(description="No lighter set of so many kinds exists; else the best within a second.")]
-    changes: Annotated[tuple[Change, ...], Field(description="Axes that take another gear than now.")]
+    changes: Annotated[tuple[GearChange, ...], Field(description="Axes that take another gear than now.")]
 
 
 class Forced(Reply, frozen=True):
@@ -65,7 +65,7 @@ def kinds_of(sought: Sequence[Sought], catalogue: Catalogue, *, most: int | None
     names = [gear.designation for gear in catalogue.gears]
     place = {name: index for index, name in enumerate(names)}
     suits, used = _judged([axis.application for axis in sought], catalogue)
-    axes = Axes(
+    axes = Choices(
         suits,
         used,
         np.array([np.nan if gear.weight_kg is None else gear.weight_kg for gear in catalogue.gears]),
@@ -99,7 +99,7 @@ def _judged(applications: Sequence[Application], catalogue: Catalogue) -> tuple[
     return suits, used
 
 
-def _step(step: Step, axes: Axes, names: Sequence[str], numbers: Sequence[int]) -> KindsStep:
+def _step(step: LightestSet, axes: Choices, names: Sequence[str], numbers: Sequence[int]) -> KindsStep:
     changed = np.flatnonzero((step.gear_of != axes.present) & (step.gear_of != NO_GEAR))
     return KindsStep(
         count=len(step.gears),
@@ -110,11 +110,11 @@ def _step(step: Step, axes: Axes, names: Sequence[str], numbers: Sequence[int]) 
     )
 
 
-def _change(axes: Axes, axis: int, to: int, names: Sequence[str], number: int) -> Change:
+def _change(axes: Choices, axis: int, to: int, names: Sequence[str], number: int) -> GearChange:
     before = int(axes.present[axis])
     gained = float((axes.weight_kg[to] - axes.weight_kg[before]) * axes.quantity[axis])
     known = before != NO_GEAR and bool(np.isfinite(gained))
-    return Change(
+    return GearChange(
         axis=number,
         gear_from=None if before == NO_GEAR else names[before],
         gear_to=names[to],

@@ -23,8 +23,8 @@ SECONDS = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Axes:
-    """A axes and the G gears that they may take.
+class Choices:
+    """Choices of A axes among G gears.
 
     `suits` (A, G), `utilisation` (A, G) of these gears, `weight_kg` (G,) with NaN where none is published, `quantity`
     (A,) of each axis in the machine, `present` (A,) the place of the gear that it has, NO_GEAR for none.
@@ -49,7 +49,7 @@ class Axes:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class LightestSet:
     """Gears of one number of kinds, as places; `gear_of` (A,) says which axis takes which, NO_GEAR where none suits."""
 
     gears: tuple[int, ...]
@@ -62,12 +62,12 @@ class Step:
 class Kinds:
     """Steps from the machine's own number of kinds down to the least; the axes that leave no choice, by their gear."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[LightestSet, ...]
     least: int
     forced: dict[int, tuple[int, ...]]
 
 
-def fewest_kinds(axes: Axes, *, most: int | None = None, seconds: float = SECONDS) -> Kinds:
+def fewest_kinds(axes: Choices, *, most: int | None = None, seconds: float = SECONDS) -> Kinds:
     """Sets of least weight for each number of kinds up to `most` and the machine's own.
 
     Axes that no gear suits count nowhere; a gear without a published weight is taken for none. A number of kinds at
@@ -79,7 +79,7 @@ def fewest_kinds(axes: Axes, *, most: int | None = None, seconds: float = SECOND
         return Kinds((), 0, {})
     own = [int(gear) for gear in np.unique(axes.present[served]) if gear != NO_GEAR]
     search = _Search.of(axes, own, monotonic() + seconds)
-    steps: dict[int, Step] = {}
+    steps: dict[int, LightestSet] = {}
     least, best = 0, _Set((), np.inf, is_proven=True)
     for count in range(1, axes.suits.shape[1] + 1):
         if least and count > min(max(len(own), least), most or count):
@@ -94,9 +94,9 @@ def fewest_kinds(axes: Axes, *, most: int | None = None, seconds: float = SECOND
     return Kinds(tuple(steps[count] for count in sorted(steps, reverse=True)), least, _forced(axes.suits))
 
 
-def _weighed(axes: Axes) -> Axes:
+def _weighed(axes: Choices) -> Choices:
     suits = axes.suits & np.isfinite(axes.weight_kg)
-    return Axes(suits, axes.utilisation, axes.weight_kg, axes.quantity, axes.present)
+    return Choices(suits, axes.utilisation, axes.weight_kg, axes.quantity, axes.present)
 
 
 def _forced(suits: BoolArray) -> dict[int, tuple[int, ...]]:
@@ -105,7 +105,7 @@ def _forced(suits: BoolArray) -> dict[int, tuple[int, ...]]:
     return {int(gear): tuple(single[gears == gear].tolist()) for gear in np.unique(gears)}
 
 
-def _step(axes: Axes, best: "_Set", count: int, own: Iterable[int]) -> Step:
+def _step(axes: Choices, best: "_Set", count: int, own: Iterable[int]) -> LightestSet:
     """A set with the gears that axes keep at no more weight, up to `count`; gears that no axis takes left out."""
     kinds = _taken(axes, best.gears)
     for gear in sorted(set(own) - set(kinds), key=lambda gear: -np.count_nonzero(axes.present == gear)):
@@ -114,10 +114,10 @@ def _step(axes: Axes, best: "_Set", count: int, own: Iterable[int]) -> Step:
     gear_of = axes.gears_of(kinds)
     has_gear = gear_of != NO_GEAR
     weight_kg = float(np.sum(axes.weight_kg[gear_of[has_gear]] * axes.quantity[has_gear]))
-    return Step(kinds, gear_of, weight_kg, best.is_proven)
+    return LightestSet(kinds, gear_of, weight_kg, best.is_proven)
 
 
-def _taken(axes: Axes, kinds: Sequence[int]) -> tuple[int, ...]:
+def _taken(axes: Choices, kinds: Sequence[int]) -> tuple[int, ...]:
     taken = np.unique(axes.gears_of(kinds))
     return tuple(taken[taken != NO_GEAR].tolist())
 
@@ -144,7 +144,7 @@ class _Search:
     _weight_kg: float = field(default=np.inf, init=False)
 
     @classmethod
-    def of(cls, axes: Axes, own: Sequence[int], end: float) -> "_Search":
+    def of(cls, axes: Choices, own: Sequence[int], end: float) -> "_Search":
         """Search over distinct rows of axes, without gears that another one replaces."""
         served = axes.suits.any(axis=1)
         rows, row_of = np.unique(axes.suits[served], axis=0, return_inverse=True)
