@@ -111,6 +111,22 @@ def test_a_line_of_a_batch_says_what_select_says(api: TestClient) -> None:
     assert "holds" not in lines[2]
 
 
+TURNED: Json = {"duty_cycle": {"motion": TURNING, "pause_s": 1.0}}
+
+
+def test_a_corner_that_is_no_application_is_an_error_of_its_line_alone(api: TestClient) -> None:
+    """At 2 % further out, 12 kg at 255 mm have 0.780 kg·m², more than the 0.76 of the whole load."""
+    moved = {"motion.mechanism.gravity_radius_mm": {"percent": 2}}
+    mechanism = {**TURNING["mechanism"], "inertia_kgm2": 0.76}
+    bad = {"duty_cycle": {"motion": {**TURNING, "mechanism": mechanism}}, "tolerances": moved}
+    good = {**TURNED, "tolerances": moved, "reference": "the same with a name of its own"}
+    lines = api.post(f"{PATH}/batch", json={"applications": [good, bad, worked_example(tolerances=TOLERANCES)]})
+    first, second, third = lines.json()["results"]
+
+    assert first["status"] == third["status"] == "ok" and first["holds"] is not None
+    assert second["problem"]["errors"] == api.post(PATH, json=bad).json()["errors"]
+
+
 LINKS = {
     "tol=T:10p": {"torque_Nm": {"percent": 10.0}},
     "tol=T.2:0.5": {"phases.1.torque_Nm": {"absolute": 0.5}},

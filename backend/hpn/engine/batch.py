@@ -12,7 +12,7 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import evaluate
-from hpn.engine.selection import Judged
+from hpn.engine.selection import Judged, judge
 from hpn.engine.tolerance import with_worst
 
 Answer = TypeVar("Answer")
@@ -64,7 +64,19 @@ def judge_batch(
         for chunk in chunks_of([len(applications[index].duty_cycle.load_phases) for index in indices]):
             members = [indices[place] for place in chunk.tolist()]
             evaluation = evaluate(Duty.of([equipped[index] for index in members]), gears, catalogue)
-            evaluation = with_worst([applications[index] for index in members], evaluation)
+            try:
+                evaluation = with_worst([applications[index] for index in members], evaluation)
+            except InputError:  # one of them has a corner that is no application: each alone
+                for index in members:
+                    results[index] = _alone(applications[index], catalogue, answer)
+                continue
             for place, index in enumerate(members):
                 results[index] = answer(Judged(applications[index], evaluation, place))
     return [result for result in results if result is not None]
+
+
+def _alone(application: Application, catalogue: Catalogue, answer: Callable[[Judged], Answer]) -> Answer | InputError:
+    try:
+        return answer(judge(application, catalogue))
+    except InputError as error:
+        return error

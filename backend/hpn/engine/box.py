@@ -265,4 +265,4 @@ def moved(application: Application, values: Mapping[Place, float]) -> Applicatio
         allowed = asked.pop("worst_case_utilisation", None)
         if allowed is not None:
             asked["utilisation"] = allowed
-    return Application.model_validate(document)
+    return type(application).model_validate(document)
