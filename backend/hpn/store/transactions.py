@@ -19,6 +19,9 @@ T = TypeVar("T")
 
 DISK_FULL = "53100"
 """State of an error by which PostgreSQL says that."""
+SNAPSHOT = {"isolation_level": "REPEATABLE READ"}
+"""Execution options of reads on PostgreSQL, where each query else sees what is newest; on SQLite there is no other."""
+
 UNAVAILABLE = "saved selections are temporarily unavailable"
 
 
@@ -72,7 +75,9 @@ class Transactions:
 
     @asynccontextmanager
     async def _reading(self) -> AsyncIterator[AsyncConnection]:
-        async with self._reachable(), self._engine.connect() as connection:
+        """Connection whose queries all see the same state, whatever is written between them."""
+        options = {} if self._engine.dialect.name == "sqlite" else SNAPSHOT
+        async with self._reachable(), self._engine.execution_options(**options).connect() as connection:
             yield connection
 
     async def _write(self, work: Callable[[AsyncConnection], Awaitable[T]]) -> T:
