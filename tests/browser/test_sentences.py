@@ -140,7 +140,7 @@ def test_each_row_of_the_drive_says_whether_it_is_a_magnitude_and_inertia_is_in_
     expect(motor.locator("caption")).to_contain_text(without)
     expect(motor).to_contain_text("Tin,max ≤ Tmot")
     expect(motor).not_to_contain_text("(i·η)")
-    stiff = drive.get_by_role("table", name=re.compile("Steifigkeit" if german else "Stiffness and position"))
+    stiff = drive.get_by_role("table", name="Positionsfehler" if german else "Position error")
     expect(stiff).to_contain_text("mit ihren Vorzeichen" if german else "with their signs")
     expect(stiff).not_to_contain_text(without)
 

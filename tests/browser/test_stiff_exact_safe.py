@@ -20,7 +20,7 @@ def test_an_axis_that_is_too_soft_is_asked_for_25_hz_and_gets_the_next_gear_with
     page = visitor.open(f"{AXIS}&JL=1.2")
     expect(selected(page)).to_contain_text("HPN-20A-5")
     page.get_by_role("link", name="Drive").click()
-    expect(page.get_by_role("table", name="Stiffness and position")).to_contain_text("23.4")
+    expect(page.get_by_role("table", name="Stiffness and resonance")).to_contain_text("23.4")
 
     page.locator("#group-stiffness > summary").click()
     page.get_by_label("Minimum natural frequency").fill("25")
