@@ -37,7 +37,7 @@ STYLES = {
         "saved",
         "selection",
         *RESULT,
-        "fleet",
+        "machine-axes",
         "machine",
         "verdict",
         "phone",
@@ -45,7 +45,7 @@ STYLES = {
         "paper",
     ),
     **{f"{part}.css": (part,) for part in ("motion", "reading", "axis")},
-    "report.css": ("tokens", "app", "tools", "fleet", "phone", "print"),
+    "report.css": ("tokens", "app", "tools", "machine-axes", "phone", "print"),
 }
 """Style sheets of the form with its result, of all other pages, of parts that come later and bring their own, and of a
 fleet’s report, which holds its own."""

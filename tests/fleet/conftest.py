@@ -1,4 +1,4 @@
-"""A fleet that is sized as the command does it, and the page of one."""
+"""A fleet as the command sizes it, and the page of a machine."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -55,8 +55,8 @@ def client(service: FastAPI) -> Iterator[TestClient]:
 
 
 @pytest.fixture(scope="module")
-def fleet(client: TestClient) -> str:
-    """Address of the fleet of the German table."""
+def machine(client: TestClient) -> str:
+    """Address of the machine of the German table."""
     read = post(client, GERMAN.encode("cp1252"))
     assert read.status_code == 200, read.text
     sized = post(client, fields={**fields_of(read.text), "size": "1"})

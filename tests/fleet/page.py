@@ -1,4 +1,4 @@
-"""The page of fleets as its form uses it."""
+"""The upload of machines as its form uses it."""
 
 import re
 from typing import Any

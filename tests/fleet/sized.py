@@ -1,11 +1,11 @@
-"""Fleets that are sized in the process of a test."""
+"""Machines of a table, sized in the process of a test."""
 
 from collections.abc import Sequence
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.machine import kept_of
 from hpn.store import MachineDraft
-from hpn.web.pages.fleet_result import draft_of
+from hpn.web.pages.machine_answers import draft_of
 from tests.fleet.tables import Row
 
 

@@ -21,9 +21,9 @@ from hpn.tables.files import NO_TEXT
 from hpn.tables.reading import Reading, reading_of
 from hpn.web.columns import answer_in
 from hpn.web.form.link_writer import to_link
-from hpn.web.pages import fleet_result
-from hpn.web.pages.fleet_files import file_of
-from hpn.web.pages.fleet_upload import WANTED
+from hpn.web.pages import machine_answers
+from hpn.web.pages.answer_files import file_of
+from hpn.web.pages.upload_bounds import WANTED
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 from tests.fleet.page import GERMAN, HEAVY, HUB, fields_of, post
@@ -55,13 +55,13 @@ def test_a_button_skips_all_columns_that_nobody_knows(client: TestClient) -> Non
     assert post(client, fields={**fields_of(skipped.text), "size": "1"}).status_code == 303
 
 
-def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, service: FastAPI) -> None:
-    page = unescape(client.get(fleet).text)
+def test_a_machine_shows_each_axis_with_its_link(client: TestClient, machine: str, service: FastAPI) -> None:
+    page = unescape(client.get(machine).text)
 
     applications = [Application.model_validate(HUB), Application.model_validate(HEAVY)]
     for number, (name, application) in enumerate(zip(("Hub Ä", "Band"), applications, strict=True), 1):
-        assert f'<a href="{fleet}/axes/{number}">{name}</a>' in page
-        assert to_link(application) in unescape(client.get(f"{fleet}/axes/{number}").text)
+        assert f'<a href="{machine}/axes/{number}">{name}</a>' in page
+        assert to_link(application) in unescape(client.get(f"{machine}/axes/{number}").text)
     assert f'<td class="gear">{select(applications[0], service.state.catalogue).selected}</td>' in page
     assert "No gear; nearest HPN-" in page
     weight = next(
@@ -69,7 +69,7 @@ def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, s
     )
     assert re.search(rf'Weight, all gears</p>\s*<p class="value">\s*<data class="quantity" value="{weight}">', page)
     assert re.search(r'Greifer</a>\s*</th>.*?class="reason"[^>]*>[^/]*/span> Torque: row 6: ', page, re.DOTALL)
-    german = unescape(client.get(fleet, headers={"Accept-Language": "de"}).text)
+    german = unescape(client.get(machine, headers={"Accept-Language": "de"}).text)
     assert re.search(
         r'class="reason"[^>]*>[^/]*/span> Drehmoment: Zeile 6: muss eine Zahl sein, z. B. 9.3, nicht "abc"\s*<', german
     )
@@ -92,8 +92,10 @@ def test_a_fleet_shows_each_axis_with_its_link(client: TestClient, fleet: str, s
         ("?part=99", []),
     ],
 )
-def test_axes_are_sorted_and_chosen_by_the_address(client: TestClient, fleet: str, query: str, axes: list[str]) -> None:
-    page = unescape(client.get(fleet + query).text)
+def test_axes_are_sorted_and_chosen_by_the_address(
+    client: TestClient, machine: str, query: str, axes: list[str]
+) -> None:
+    page = unescape(client.get(machine + query).text)
 
     rows = re.findall(
         r'<tr class="(?:suitable|unsuitable|open)[^>]*>.*?<th scope="row"[^>]*>\s*(?:<a [^>]*>)?([^<]*)',
@@ -129,10 +131,10 @@ def test_the_share_of_an_axis_is_told_from_what_its_governing_check_may_use(clie
     assert re.search(r'class="cell largest">.*?class="percent">79.996', page)
 
 
-def test_files_hold_the_answers(client: TestClient, fleet: str) -> None:
-    parquet = pq.read_table(io.BytesIO(client.get(f"{fleet}/axes.parquet").content)).to_pylist()
-    text = list(csv.DictReader(io.StringIO(client.get(f"{fleet}/axes.csv").content.decode())))
-    sheet = openpyxl.load_workbook(io.BytesIO(client.get(f"{fleet}/axes.xlsx").content)).active
+def test_files_hold_the_answers(client: TestClient, machine: str) -> None:
+    parquet = pq.read_table(io.BytesIO(client.get(f"{machine}/axes.parquet").content)).to_pylist()
+    text = list(csv.DictReader(io.StringIO(client.get(f"{machine}/axes.csv").content.decode())))
+    sheet = openpyxl.load_workbook(io.BytesIO(client.get(f"{machine}/axes.xlsx").content)).active
 
     assert [row["axis"] for row in parquet] == [row["axis"] for row in text] == ["Hub Ä", "Band", "Greifer"]
     assert sheet is not None
@@ -177,12 +179,12 @@ def test_no_cell_of_the_file_for_excel_begins_a_formula_and_the_workbook_comes_f
     assert re.findall(r'href="[^"]*/axes\.(\w+)"', client.get(place).text) == ["xlsx", "csv", "parquet"]
 
 
-def test_a_name_of_a_fleet_that_was_saved_before_names_had_a_bound_is_cut_in_the_workbook_alone(
-    service: FastAPI, client: TestClient, fleet: str
+def test_a_name_of_a_machine_that_was_saved_before_names_had_a_bound_is_cut_in_the_workbook_alone(
+    service: FastAPI, client: TestClient, machine: str
 ) -> None:
     assert client.portal is not None
-    saved = client.portal.call(service.state.store.find_machine, fleet.rpartition("/")[2])
-    table = fleet_result.answers_of(saved).slice(0, 1)
+    saved = client.portal.call(service.state.store.find_machine, machine.rpartition("/")[2])
+    table = machine_answers.answers_of(saved).slice(0, 1)
     long = table.set_column(0, "axis", pa.array(["x" * 40_000]))
 
     book, typed = (file_of(long, saved.created, suffix, Reader("en")) for suffix in ("xlsx", "parquet"))
@@ -193,20 +195,20 @@ def test_a_name_of_a_fleet_that_was_saved_before_names_had_a_bound_is_cut_in_the
     assert pq.read_table(io.BytesIO(typed))["axis"].to_pylist() == ["x" * 40_000]
 
 
-def test_files_of_a_fleet_are_made_in_the_process_beside_the_service(client: TestClient, fleet: str) -> None:
+def test_files_of_a_machine_are_made_in_the_process_beside_the_service(client: TestClient, machine: str) -> None:
     pool = state_of(client).pools["exports"]
     pool.beside.close()
 
     for suffix in ("xlsx", "csv", "parquet"):
-        assert client.get(f"{fleet}/axes.{suffix}").status_code == 200
+        assert client.get(f"{machine}/axes.{suffix}").status_code == 200
         assert pool.beside._process is not None and pool.beside._process.poll() is None
         pool.beside.close()
 
 
-def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestClient, fleet: str) -> None:
+def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestClient, machine: str) -> None:
     def errors(language: str) -> dict[str, list[str | None]]:
         files = {
-            suffix: client.get(f"{fleet}/axes.{suffix}", headers={"Accept-Language": language})
+            suffix: client.get(f"{machine}/axes.{suffix}", headers={"Accept-Language": language})
             for suffix in ("csv", "xlsx", "parquet")
         }
         assert {file.headers["Vary"] for file in files.values()} >= {"Accept-Language, Cookie"}
@@ -225,7 +227,7 @@ def test_reasons_of_a_file_for_people_are_in_the_readers_language(client: TestCl
 
 
 @pytest.mark.parametrize("suffix", ["csv", "xlsx", "parquet"])
-def test_a_browser_gets_the_page_of_a_fleet_that_is_gone_for_its_files_too(client: TestClient, suffix: str) -> None:
+def test_a_browser_gets_the_page_of_a_machine_that_is_gone_for_its_files_too(client: TestClient, suffix: str) -> None:
     browser = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
 
     page = client.get(f"/machines/nowhere/axes.{suffix}", headers=browser)
@@ -436,9 +438,9 @@ def test_a_table_with_more_than_a_machine_has_is_told_where_there_is_room(
     assert "the limit of a page is" in answer.text and "POST /api/v1/fleet" in answer.text
 
 
-def test_reasons_are_kept_as_codes_and_values(client: TestClient, fleet: str, service: FastAPI) -> None:
+def test_reasons_are_kept_as_codes_and_values(client: TestClient, machine: str, service: FastAPI) -> None:
     assert client.portal is not None
-    saved = client.portal.call(service.state.store.find_machine, fleet.rpartition("/")[2])
+    saved = client.portal.call(service.state.store.find_machine, machine.rpartition("/")[2])
 
     (fault,) = answer_in(saved.items[2].answer).faults
 

@@ -24,10 +24,10 @@ from tests.store.test_machines import MOST_BYTES
 
 
 @pytest.fixture(scope="module")
-def kept(client: TestClient, service: FastAPI, fleet: str) -> MachineDraft:
-    """The fleet of the German table as it was kept."""
+def kept(client: TestClient, service: FastAPI, machine: str) -> MachineDraft:
+    """The machine of the German table as it was kept."""
     assert client.portal is not None
-    found = client.portal.call(service.state.store.find_machine, fleet.rpartition("/")[2])
+    found = client.portal.call(service.state.store.find_machine, machine.rpartition("/")[2])
     return draft_of(found)
 
 
@@ -39,12 +39,12 @@ def draft_of(machine: Machine, caller: str = "") -> MachineDraft:
 
 
 def keep(client: TestClient, service: FastAPI, draft: MachineDraft) -> str:
-    """Address of a fleet that is kept as if it had just been sized."""
+    """Address of a machine that is kept as if it had just been sized."""
     assert client.portal is not None
     return f"/machines/{client.portal.call(service.state.store.keep_machine, draft, MOST_BYTES)}"
 
 
-def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: MachineDraft) -> None:
+def test_a_machine_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: MachineDraft) -> None:
     address = keep(client, service, kept)
     assert "Save as a project" in client.get(address).text
 
@@ -60,7 +60,7 @@ def test_a_fleet_is_saved_listed_and_never_changed(client: TestClient, service: 
     assert client.get(address).status_code == 404
 
 
-def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastAPI, kept: MachineDraft) -> None:
+def test_a_saved_machine_is_renamed_on_its_page(client: TestClient, service: FastAPI, kept: MachineDraft) -> None:
     address = keep(client, service, kept)
     assert client.post(f"{address}/rename", data={"title": "early"}).status_code == 404
     client.post(address, data={"title": "Line 4", "ref": "P-7", "author": "MM", "rev": "B"})
@@ -75,7 +75,7 @@ def test_a_saved_fleet_is_renamed_on_its_page(client: TestClient, service: FastA
     assert '<h1 id="machine-name">Line &lt;5&gt;</h1>' in page and "P-7" not in page and "MM" in page
 
 
-def test_names_of_fleets_that_look_like_others_are_refused(
+def test_names_of_machines_that_look_like_others_are_refused(
     client: TestClient, service: FastAPI, kept: MachineDraft
 ) -> None:
     address = keep(client, service, kept)
@@ -91,19 +91,19 @@ def test_names_of_fleets_that_look_like_others_are_refused(
     )
 
 
-def test_a_fleet_says_what_differs_today(client: TestClient, service: FastAPI, fleet: str, tmp_path: Path) -> None:
+def test_a_machine_says_what_differs_today(client: TestClient, service: FastAPI, machine: str, tmp_path: Path) -> None:
     then = select(Application.model_validate(HUB), service.state.catalogue).candidates[0]
     columns = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
     (tmp_path / "ratings.csv").write_text(f"{columns}{then.size},{then.ratio},0.4,0.3,0.5,weaker\n")
     url = service.state.settings.database_url
     with TestClient(create_app(Settings(database_url=url, catalogue_supplement=tmp_path))) as later:
-        page = unescape(later.get(fleet).text)
+        page = unescape(later.get(machine).text)
         now = select(Application.model_validate(HUB), state_of(later).catalogue).selected
 
     assert "1 axis gets another answer." in page
-    changed = page[page.index("Differences today") : page.index('class="fleet-grid"')]
+    changed = page[page.index("Differences today") : page.index('class="axes-grid"')]
     assert changed.index(then.designation) < changed.index(str(now))
-    assert "Differences today" not in client.get(fleet).text
+    assert "Differences today" not in client.get(machine).text
 
 
 def test_last_bits_of_another_processor_are_no_other_answer(
@@ -119,7 +119,7 @@ def test_last_bits_of_another_processor_are_no_other_answer(
     assert "Every axis gets the same result." in unescape(client.get(keep(client, service, moved)).text)
 
 
-def test_only_the_owner_s_key_renames_and_deletes_a_fleet(kept: MachineDraft, tmp_path: Path) -> None:
+def test_only_the_owner_s_key_renames_and_deletes_a_machine(kept: MachineDraft, tmp_path: Path) -> None:
     keys = {name: f"key of {name}" for name in ("anna", "bert")}
     pairs = [f"{name}:{hashlib.sha256(key.encode()).hexdigest()}" for name, key in keys.items()]
     settings = Settings.model_validate({"database_url": f"sqlite:///{tmp_path / 'db'}", "api_keys": " ".join(pairs)})
@@ -149,7 +149,7 @@ def keyed(tmp_path: Path) -> Iterator[TestClient]:
         yield client
 
 
-def test_a_fleet_that_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClient, tmp_path: Path) -> None:
+def test_a_machine_that_a_key_has_calculated_only_that_key_sees_and_saves(keyed: TestClient, tmp_path: Path) -> None:
     anna, bert, admin = ({"X-API-Key": name} for name in ("anna", "bert", "admin"))
     table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
     sized = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers=anna)
@@ -170,7 +170,7 @@ def test_a_fleet_that_a_key_has_calculated_only_that_key_sees_and_saves(keyed: T
     assert keyed.get(place, headers=bert).status_code == 200  # what is saved is there for all
 
 
-def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient, tmp_path: Path) -> None:
+def test_a_caller_with_many_unsaved_machines_is_told_what_to_do(keyed: TestClient, tmp_path: Path) -> None:
     table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
     sized = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
     store, place = state_of(keyed).store, sized.headers["location"]
@@ -190,7 +190,7 @@ def test_a_caller_with_many_unsaved_fleets_is_told_what_to_do(keyed: TestClient,
     assert keyed.post("/machines", files={"file": ("a.csv", table)}, headers={"X-API-Key": "anna"}).status_code == 303
 
 
-def test_where_unsaved_fleets_take_all_their_room_a_new_one_is_refused(tmp_path: Path) -> None:
+def test_where_unsaved_machines_take_all_their_room_a_new_one_is_refused(tmp_path: Path) -> None:
     table = write(tmp_path / "axes.csv", [row_of("one", HUB)]).read_bytes()
     settings = Settings(database_url=f"sqlite:///{tmp_path / 'db'}", maximum_unsaved_fleet_bytes=100)
     with TestClient(create_app(settings), follow_redirects=False) as client:

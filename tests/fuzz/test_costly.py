@@ -20,8 +20,8 @@ from hpn.tables.table import Table
 from hpn.tables.workbooks import LONGEST_NAME, sheets_of
 from hpn.web.door.beside import EndedError, ProcessBeside
 from hpn.web.door.pools import FILE_BOUNDS
-from hpn.web.pages.fleet_upload import WANTED as AXES
 from hpn.web.pages.paste import WANTED as PHASES
+from hpn.web.pages.upload_bounds import WANTED as AXES
 from hpn.words.wording import Sentence
 from tests.fuzz import cells as of_cells
 from tests.fuzz.costly import OBJECTS, PACKED, TABLES, TEXTS, WORKBOOKS, made

@@ -14,7 +14,7 @@ from hpn.web.settings import Settings
 from tests.build import worked_example
 from tests.state import state_of
 from tests.store.test_machines import MOST_BYTES
-from tests.store.test_machines import draft as fleet_draft
+from tests.store.test_machines import draft as machine_draft
 
 SAVE = {"application": worked_example(), "title": "Axis"}
 ROUNDS = 8
@@ -79,19 +79,19 @@ def test_any_state_is_changed_by_everybody(client: TestClient) -> None:
 
 
 def kept(client: TestClient) -> str:
-    """Address of a saved fleet."""
+    """Address of a saved machine."""
     assert client.portal is not None
     store = state_of(client).store
-    id: str = client.portal.call(store.keep_machine, fleet_draft(), MOST_BYTES)
+    id: str = client.portal.call(store.keep_machine, machine_draft(), MOST_BYTES)
     assert client.post(f"/machines/{id}", data={"title": "Line"}).status_code == 303
     return f"/machines/{id}"
 
 
-@pytest.mark.parametrize("kind_of_thing", ["selection", "fleet"])
+@pytest.mark.parametrize("kind_of_thing", ["selection", "machine"])
 def test_forms_of_one_version_that_are_sent_at_once_change_it_once(client: TestClient, kind_of_thing: str) -> None:
     for _ in range(ROUNDS):
-        place = kept(client) if kind_of_thing == "fleet" else saved(client)[0].removeprefix("/api/v1")
-        form = {"ref": "", "version": "2" if kind_of_thing == "fleet" else "1"}
+        place = kept(client) if kind_of_thing == "machine" else saved(client)[0].removeprefix("/api/v1")
+        form = {"ref": "", "version": "2" if kind_of_thing == "machine" else "1"}
 
         renames = [{"title": f"by {number}", **form} for number in range(CALLERS - 1)]
         calls = [partial(client.post, f"{place}/rename", data=data) for data in renames]
@@ -117,10 +117,10 @@ def test_a_page_says_that_somebody_was_faster(client: TestClient) -> None:
     assert client.post(f"{place}/delete", data={"version": "2"}).status_code == 303
 
 
-def test_a_fleet_that_two_save_at_once_has_the_names_of_one_and_the_other_learns_it(client: TestClient) -> None:
+def test_a_machine_that_two_save_at_once_has_the_names_of_one_and_the_other_learns_it(client: TestClient) -> None:
     assert client.portal is not None
     for _ in range(ROUNDS):
-        place = f"/machines/{client.portal.call(state_of(client).store.keep_machine, fleet_draft(), MOST_BYTES)}"
+        place = f"/machines/{client.portal.call(state_of(client).store.keep_machine, machine_draft(), MOST_BYTES)}"
         found = at_once([partial(client.post, place, data={"title": f"of {n}"}) for n in range(3)])
 
         assert sorted(found) == [303, 412, 412]

@@ -49,8 +49,8 @@ def saved(api: TestClient) -> str:
 
 
 @pytest.fixture(scope="module")
-def fleet(api: TestClient, service: FastAPI) -> str:
-    """Id of a fleet that was sized."""
+def machine(api: TestClient, service: FastAPI) -> str:
+    """Id of a machine that was sized."""
     draft = machine_draft([row_of("hub", worked_example())], service.state.catalogue)
     assert api.portal is not None
     id: str = api.portal.call(service.state.store.keep_machine, draft, MOST_BYTES)
@@ -58,22 +58,22 @@ def fleet(api: TestClient, service: FastAPI) -> str:
 
 
 @pytest.fixture
-def address(saved: str, fleet: str) -> "Address":
+def address(saved: str, machine: str) -> "Address":
     """Makes an address of the path of a route."""
-    return Address(saved, fleet)
+    return Address(saved, machine)
 
 
 class Address:
     """Addresses that lead somewhere, one for each route."""
 
-    def __init__(self, saved: str, fleet: str) -> None:
+    def __init__(self, saved: str, machine: str) -> None:
         self.values = {
             "{id}": saved,
-            "{fleet}": fleet,
+            "{machine}": machine,
             "{designation}": "HPN-20A-5",
             "{size}": "20A",
             "{code}": "average_torque",
-            "{rest:path}": fleet,
+            "{rest:path}": machine,
             "{name}": "not-found",
             "{number}": "1",
             "{label}": "saved",
@@ -90,9 +90,9 @@ class Address:
 
 
 @pytest.fixture(scope="module")
-def answers(api: TestClient, saved: str, fleet: str) -> dict[str, Any]:
+def answers(api: TestClient, saved: str, machine: str) -> dict[str, Any]:
     """Answer of each route, by its path."""
-    address = Address(saved, fleet)
+    address = Address(saved, machine)
     return {path: api.get(address(path), headers=coding(path), follow_redirects=False) for path in PATHS}
 
 
@@ -164,7 +164,7 @@ def test_posted_json_and_problems_are_compressed_and_lines_are_not(api: TestClie
     assert [answer.headers.get("Content-Encoding") for answer in (*answers, lines)] == ["gzip"] * 3 + [None]
 
 
-WITHOUT_BODY = {"/machines/{fleet}/delete", "/fleets", "/fleets/{rest:path}"}
+WITHOUT_BODY = {"/machines/{machine}/delete", "/fleets", "/fleets/{rest:path}"}
 """Routes that answer before a body is read, or without one."""
 
 FORMS = {str(route.path) for route in ALL if "POST" in (route.methods or ())} - WITHOUT_BODY

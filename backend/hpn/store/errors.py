@@ -28,11 +28,11 @@ class NewerDatabaseError(StoreError):
 
 
 class ShareSpentError(StoreError):
-    """A caller has as many calculated fleets as one may have that nobody has saved."""
+    """A caller has as many unsaved machines as one may have."""
 
 
 class NoRoomError(StoreError):
-    """The calculated fleets that nobody has saved take as much room as all of them may."""
+    """The unsaved machines take as much room as all of them may."""
 
 
 class KeySpentError(StoreError):

@@ -50,19 +50,19 @@ from hpn.web.pages import (
     assets,
     compared,
     explanations,
+    machine,
     machine_changes,
     machine_kinds,
     machine_list,
+    machine_upload,
     paste,
     saved_list,
     saving,
-    sized_fleets,
     transfer,
 )
 from hpn.web.pages import axis as axis_pages
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
-from hpn.web.pages import fleets as fleet_pages
 from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
@@ -131,11 +131,11 @@ ROUTERS: tuple[APIRouter, ...] = (
     catalogue_pages.router,
     explanations.router,
     paste.router,
-    fleet_pages.router,
+    machine_upload.router,
     machine_changes.router,
     machine_kinds.router,
     machine_list.router,
-    sized_fleets.router,
+    machine.router,
     transfer.router,
     compared.router,
     saved_list.router,

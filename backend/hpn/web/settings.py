@@ -238,8 +238,8 @@ class Settings(BaseSettings):
     maximum_unsaved_fleet_bytes: int = Field(
         1_000_000_000,
         gt=0,
-        description="Most bytes in the database of all fleets that the page has calculated and nobody has saved, each "
-        "kept for a day; a new one beyond it gets a 503.",
+        description="Most bytes in the database of all unsaved machines that the page has calculated, each kept for a "
+        "day; a new one beyond it gets a 503.",
     )
     host: str = Field("127.0.0.1", description="Address that `hpn serve` listens on.")
     port: Annotated[int, BeforeValidator(_own_port)] = Field(

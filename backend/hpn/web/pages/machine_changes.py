@@ -38,6 +38,7 @@ from hpn.web.edits import (
 from hpn.web.form import common as fields
 from hpn.web.form.given import FieldProblem
 from hpn.web.machines import FEW_AXES, apply, author_of, editable, found
+from hpn.web.pages.machine import EMPTY, REASON, shown
 from hpn.web.pages.machine_editing import (
     MOST_UNDONE,
     QUANTITY,
@@ -50,7 +51,6 @@ from hpn.web.pages.machine_editing import (
 )
 from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.rendering import or_reason
-from hpn.web.pages.sized_fleets import EMPTY, REASON, shown
 from hpn.words.wording import N_, Sentence
 
 MARK_SOME = N_("Mark the axes first.")
@@ -72,7 +72,7 @@ async def change(request: Request) -> Response:
     """Says the effect of a change, or makes it, and shows the machine as it then is."""
     require_same_origin(request)
     sent = Sent.of(pairs_of(await read_form(request)))
-    id = request.path_params["fleet"]
+    id = request.path_params["machine"]
     await found(request, id, [], "machine")
     try:
         editing = await _changed(request, id, sent)
@@ -256,9 +256,9 @@ def _told(value: Any) -> str:
 
 async def lead_back(request: Request) -> Response:
     """Leads to the machine: a change is sent, not opened."""
-    return RedirectResponse(f"{ADDRESS}/{request.path_params['fleet']}", 303)
+    return RedirectResponse(f"{ADDRESS}/{request.path_params['machine']}", 303)
 
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/change", change, methods=["POST"], dependencies=[admit("deleting")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/change", lead_back, dependencies=[admit("reading")])
+router.add_api_route(f"{ADDRESS}/{{machine}}/change", change, methods=["POST"], dependencies=[admit("deleting")])
+router.add_api_route(f"{ADDRESS}/{{machine}}/change", lead_back, dependencies=[admit("reading")])

@@ -18,9 +18,9 @@ from hpn.web.door.problems import needs
 from hpn.web.door.visit import current
 from hpn.web.edits import kinds_in
 from hpn.web.machines import found
+from hpn.web.pages.machine import REASON, may_change
 from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.rendering import or_reason, page
-from hpn.web.pages.sized_fleets import REASON, may_change
 
 
 class Decision(NamedTuple):
@@ -42,7 +42,7 @@ class KindsView(NamedTuple):
 @or_reason(REASON)
 async def show_kinds(request: Request) -> Response:
     """Fewest kinds of a machine."""
-    machine = await found(request, request.path_params["fleet"], None, "machine")
+    machine = await found(request, request.path_params["machine"], None, "machine")
     return await compute(request, "batches", _page, request, machine)
 
 
@@ -72,4 +72,4 @@ def _decisions(kinds: MachineKinds) -> list[Decision]:
 
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/kinds", show_kinds, dependencies=[admit("reading")])
+router.add_api_route(f"{ADDRESS}/{{machine}}/kinds", show_kinds, dependencies=[admit("reading")])

@@ -13,11 +13,11 @@ from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem, needs
 from hpn.web.form.linked import onward
-from hpn.web.pages.fleets import WORDS, Draft
+from hpn.web.pages.machine import REASON
+from hpn.web.pages.machine_upload import WORDS, Draft
 from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saved_list import LINES_ON_PAGE, NO_SUCH_PART
-from hpn.web.pages.sized_fleets import REASON
 from hpn.words.fields import Model
 from hpn.words.wording import Sentence
 

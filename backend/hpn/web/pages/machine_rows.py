@@ -43,7 +43,7 @@ def opened(view: MachineView, rows: Iterable[Row]) -> dict[int, Opened]:
 
 
 def _reasons(row: Row) -> tuple[Reason, ...]:
-    from hpn.web.pages.fleet_result import reasons  # needs Arrow
+    from hpn.web.pages.machine_answers import reasons  # needs Arrow
 
     return tuple(reasons(answer_in(row.answer).faults))
 

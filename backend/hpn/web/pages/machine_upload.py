@@ -1,7 +1,7 @@
-"""Fleets on pages: a table of axes is uploaded, its columns are put right, all axes are sized, and the result is kept.
+"""Machines from tables: one is uploaded, its columns are put right, all its axes are sized, and the result is kept.
 
 `POST /machines` answers with what each column is read as, or, once no question is open, leads to the page of the result
-(`sized_fleets.py`). Modules that need Arrow are imported within the requests that use them.
+(`machine.py`). Modules that need Arrow are imported within the requests that use them.
 """
 
 import hashlib
@@ -116,7 +116,7 @@ async def upload(request: Request) -> Response:
         status, problems = refused.status_code, refused.sentences or (Sentence(UNAVAILABLE),)
         headers = dict(refused.headers or {})
     shown = {"draft": draft, "problems": problems, **WORDS}
-    response = await compute(request, "pages", page, request, "fleets.html", status, **shown)
+    response = await compute(request, "pages", page, request, "machine_upload.html", status, **shown)
     response.headers.update(headers)
     return response
 
@@ -149,9 +149,9 @@ def _require_few(axes: int, phases: int) -> None:
 
 
 def _wanted() -> Wanted:
-    from hpn.web.pages import fleet_upload
+    from hpn.web.pages import upload_bounds
 
-    return fleet_upload.WANTED
+    return upload_bounds.WANTED
 
 
 def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Draft:
@@ -165,7 +165,7 @@ def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Dr
 
 
 async def _sized(request: Request, taken: Taken) -> str:
-    """Id of the fleet that comes of a table; raises Problem, or StoreUnavailableError."""
+    """Id of the machine that comes of a table; raises Problem, or StoreUnavailableError."""
     store, most_bytes = request.app.state.store, request.app.state.settings.maximum_unsaved_fleet_bytes
     caller = hashlib.sha256(request.state.caller.encode()).hexdigest()  # no address is kept in clear
     try:
@@ -177,12 +177,12 @@ async def _sized(request: Request, taken: Taken) -> str:
         raise Problem.later(spent, NO_ROOM_SECONDS, 429) from None
     except NoRoomError:
         raise Problem.later(Sentence(NO_ROOM), NO_ROOM_SECONDS) from None
-    note(request, fleet=id)
+    note(request, machine=id)
     return id
 
 
 async def _calculated(request: Request, taken: Taken) -> MachineDraft:
-    """Fleet of a table; raises Problem."""
+    """Machine of a table; raises Problem."""
     catalogue = request.app.state.catalogue
     work = await compute(request, "pages", _work, taken, catalogue)
     return await compute(request, "pages", _kept, await worked_beside(request, work), catalogue)
@@ -195,7 +195,7 @@ def _work(taken: Taken, catalogue: Catalogue) -> Callable[[], Any]:
 
 
 def _kept(*arguments: Any) -> MachineDraft:
-    from hpn.web.pages.fleet_result import draft_of
+    from hpn.web.pages.machine_answers import draft_of
 
     return draft_of(*arguments)
 

@@ -1,4 +1,4 @@
-"""The answers of a fleet as files for a table calculator or a program.
+"""The answers of a machine as files for a table calculator or a program.
 
 They are made in a process beside the service, which imports this module and none of the web's libraries.
 """
@@ -26,7 +26,7 @@ LONGEST_CELL = 32_767
 
 
 def file_of(answers: pa.Table, created: datetime, suffix: str, reader: Reader) -> bytes:
-    """The answers of a fleet in the format of a suffix, with the columns that `hpn fleet` gives them.
+    """The answers of a machine in the format of a suffix, with the columns that `hpn fleet` gives them.
 
     Reasons are in the reader's language where people read them.
     """

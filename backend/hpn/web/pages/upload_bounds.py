@@ -1,4 +1,4 @@
-"""A table of axes that somebody uploads: taken as it is where `hpn fleet` would take it, else as a table of cells."""
+"""Bounds of an uploaded table of axes: taken as it is where `hpn fleet` would take it, else as a table of cells."""
 
 from hpn.fleet.columns import are_taken
 from hpn.tables.files import Wanted

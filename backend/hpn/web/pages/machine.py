@@ -1,4 +1,4 @@
-"""The page of a sized fleet, which is saved, listed, renamed and deleted there.
+"""The page of a machine, which is saved, listed, renamed and deleted there.
 
 It is kept for a day, and for good once it is saved with its title block: the project of a machine.
 """
@@ -45,7 +45,7 @@ MEDIA_TYPES = {
 }
 """Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
 
-REASON = "fleet_refused.html"
+REASON = "machine_refused.html"
 """Page that says why there is nothing to show."""
 
 CHANGES_ON_PAGE = 100
@@ -130,13 +130,13 @@ async def _today(request: Request, saved: Machine) -> list[Any] | None:
 
 
 def _changes(*arguments: Any) -> Any:
-    from hpn.web.pages import fleet_result
+    from hpn.web.pages import machine_answers
 
-    return fleet_result.changes(*arguments)
+    return machine_answers.changes(*arguments)
 
 
 async def _found(request: Request) -> Machine:
-    saved: Machine | None = await request.app.state.store.find_machine(request.path_params["fleet"])
+    saved: Machine | None = await request.app.state.store.find_machine(request.path_params["machine"])
     if saved is None:
         raise Problem(404, GONE)
     require_seen(request, saved)
@@ -166,10 +166,10 @@ async def download(request: Request) -> Response:
 
 def _file(saved: Machine, suffix: str, reader: Reader) -> Callable[[], bytes]:
     """The call that makes a file."""
-    from hpn.web.pages import fleet_result
-    from hpn.web.pages.fleet_files import file_of
+    from hpn.web.pages import machine_answers
+    from hpn.web.pages.answer_files import file_of
 
-    return partial(file_of, fleet_result.answers_of(saved), saved.created, suffix, reader)
+    return partial(file_of, machine_answers.answers_of(saved), saved.created, suffix, reader)
 
 
 # --- Saving, listing, renaming, deleting ------------------------------------------------------------------------------
@@ -177,7 +177,7 @@ def _file(saved: Machine, suffix: str, reader: Reader) -> Callable[[], bytes]:
 
 @or_reason(REASON)
 async def save(request: Request) -> Response:
-    """Saves a fleet that was calculated, with its title block, and leads back to its page."""
+    """Saves a machine that was calculated, with its title block, and leads back to its page."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
     form = TitleBlock({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
@@ -188,7 +188,7 @@ async def save(request: Request) -> Response:
     first = await compute(request, "pages", _first_revision, saved, names)
     if not await request.app.state.store.save_machine(saved.id, names, request.state.api_key, first):
         await _require_same(request, names)
-    note(request, fleet=saved.id)
+    note(request, machine=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
 
 
@@ -201,7 +201,7 @@ def _first_revision(saved: Machine, names: Mapping[str, str | None]) -> Revision
 
 
 async def _require_same(request: Request, names: Mapping[str, str | None]) -> None:
-    """Raise Problem 412 unless a fleet is saved under these names: a form that is sent twice saves once."""
+    """Raise Problem 412 unless a machine is saved under these names: a form that is sent twice saves once."""
     saved = await _found(request)
     if any(getattr(saved, name) != text for name, text in names.items()):
         raise Problem(412, SAVED_MEANWHILE)
@@ -215,33 +215,33 @@ async def lead_to_list(request: Request) -> Response:
 
 @or_reason(REASON)
 async def rename(request: Request) -> Response:
-    """Gives a saved fleet another title and reference, and leads back to its page."""
+    """Gives a saved machine another title and reference, and leads back to its page."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
     saved, version = await _own(request), version_of(fields)
     names = names_of(fields, saved)
     if not await request.app.state.store.rename(saved.id, names, version, "machine"):
         raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
-    note(request, fleet=saved.id)
+    note(request, machine=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
 
 
 @or_reason(REASON)
 async def ask_to_delete(request: Request) -> Response:
-    """The page that asks before a fleet goes for good."""
-    return await compute(request, "pages", page, request, "fleet_delete.html", saved=await _own(request))
+    """The page that asks before a machine goes for good."""
+    return await compute(request, "pages", page, request, "machine_delete.html", saved=await _own(request))
 
 
 @or_reason(REASON)
 async def delete(request: Request) -> Response:
-    """Deletes a fleet for good, and leads to the list."""
+    """Deletes a machine for good, and leads to the list."""
     require_same_origin(request)
     given = "content-type" in request.headers  # a script may send no body
     version = version_of(dict(pairs_of(await read_form(request)))) if given else None
     saved = await _own(request)
     if not await request.app.state.store.delete(saved.id, version, "machine"):
         raise Problem(404, GONE) if version is None else changed_since()
-    note(request, fleet=saved.id)
+    note(request, machine=saved.id)
     return RedirectResponse(ADDRESS, 303)
 
 
@@ -262,12 +262,12 @@ async def lead_on(request: Request) -> Response:
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
 router.add_api_route(f"{ADDRESS}/saved", lead_to_list, dependencies=[admit("listing")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}", show, dependencies=[admit("reading")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}", save, methods=["POST"], dependencies=[admit("writing")])
+router.add_api_route(f"{ADDRESS}/{{machine}}", show, dependencies=[admit("reading")])
+router.add_api_route(f"{ADDRESS}/{{machine}}", save, methods=["POST"], dependencies=[admit("writing")])
 for suffix in MEDIA_TYPES:
-    router.add_api_route(f"{ADDRESS}/{{fleet}}/axes.{suffix}", download, dependencies=[admit("reading")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/rename", rename, methods=["POST"], dependencies=[admit("deleting")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", ask_to_delete, dependencies=[admit("deleting")])
-router.add_api_route(f"{ADDRESS}/{{fleet}}/delete", delete, methods=["POST"], dependencies=[admit("deleting")])
+    router.add_api_route(f"{ADDRESS}/{{machine}}/axes.{suffix}", download, dependencies=[admit("reading")])
+router.add_api_route(f"{ADDRESS}/{{machine}}/rename", rename, methods=["POST"], dependencies=[admit("deleting")])
+router.add_api_route(f"{ADDRESS}/{{machine}}/delete", ask_to_delete, dependencies=[admit("deleting")])
+router.add_api_route(f"{ADDRESS}/{{machine}}/delete", delete, methods=["POST"], dependencies=[admit("deleting")])
 for older in (OLDER_ADDRESS, f"{OLDER_ADDRESS}/{{rest:path}}"):
     router.add_api_route(older, lead_on, methods=["GET", "POST"], dependencies=[admit("calculator")])
