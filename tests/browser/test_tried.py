@@ -5,7 +5,7 @@ import random
 from playwright.sync_api import expect
 
 from hpn.catalogue import Catalogue
-from hpn.web.form.link_writer import to_link
+from hpn.links.writer import to_link
 from tests.browser.conftest import Visitor
 from tests.browser.test_page import selected
 from tests.property.test_tried import rejected

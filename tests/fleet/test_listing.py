@@ -17,7 +17,7 @@ from hpn.fleet.order import Order
 from hpn.fleet.outcome import answer_fields
 from hpn.fleet.run import size_fleet
 from hpn.fleet.summary import summary_of
-from hpn.web.form.link_writer import to_link
+from hpn.links.writer import to_link
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 from tests.fleet.tables import FAULTS, Row, in_long_form, row_of, spoiled, write

@@ -17,10 +17,10 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.engine.selection import select
+from hpn.links.writer import to_link
 from hpn.tables.files import NO_TEXT
 from hpn.tables.reading import Reading, reading_of
 from hpn.web.columns import answer_in
-from hpn.web.form.link_writer import to_link
 from hpn.web.pages import machine_answers
 from hpn.web.pages.answer_files import file_of
 from hpn.web.pages.upload_bounds import WANTED

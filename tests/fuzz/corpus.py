@@ -17,9 +17,9 @@ from hpn.engine.selection import select
 from hpn.files.export import Export
 from hpn.files.workbook.workbook import workbook
 from hpn.fleet.columns import COLUMNS as FLEET
-from hpn.web.form.labels import LABELS
-from hpn.web.form.link_writer import to_link
-from hpn.web.form.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.links.labels import LABELS
+from hpn.links.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.links.writer import to_link
 from hpn.web.pages.transfer import write_table
 from hpn.words.reader import Reader
 from tests.build import LIFTING, TURNING, cycle, phase, worked_example

@@ -18,12 +18,12 @@ from hpn.catalogue.tables import TABLES
 from hpn.engine.selection import encode, select
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.run import size_fleet
+from hpn.links.symbols import AXIS_INPUTS
 from hpn.tables.cycles import LAST, PARTS, PHASE, SEPARATOR, TOTALS
 from hpn.tables.files import tidied
 from hpn.tables.inputs import CYCLE, Inputs
 from hpn.tables.interpreter import DECIMAL, SCALES, TIMES
 from hpn.web.app import create_app
-from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.web.settings import Settings
 from tests.fuzz import corpus
 from tests.fuzz.caller import Caller, Header, Reply

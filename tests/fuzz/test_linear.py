@@ -18,6 +18,7 @@ from typing import Any
 import pytest
 
 import hpn
+from hpn.links.symbols import AXIS_INPUTS
 from hpn.tables.axes import read_axes
 from hpn.tables.cells import harmless, tidy
 from hpn.tables.columns import Choices
@@ -28,7 +29,6 @@ from hpn.tables.numbers import Notation, read_value, to_fields
 from hpn.tables.reading import reading_of
 from hpn.tables.sheets import LONGEST_TEXT, Grid, grid_of
 from hpn.tables.table import Table
-from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.web.pages.paste import WANTED as PHASES
 from hpn.web.pages.upload_bounds import WANTED as AXES
 from hpn.words.patterns import Pattern

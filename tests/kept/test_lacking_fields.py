@@ -18,8 +18,8 @@ from hpn.files.aas.submodel import package
 from hpn.files.export import Export, Heading
 from hpn.files.report.content import content
 from hpn.files.workbook.workbook import workbook
+from hpn.links.writer import to_link
 from hpn.store.saved import packed
-from hpn.web.form.link_writer import to_link
 from hpn.words.quantities import CANDIDATE
 from hpn.words.reader import Reader
 from tests.kept.content import APPLICATIONS

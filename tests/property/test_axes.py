@@ -8,11 +8,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from hpn.links.symbols import AXIS_INPUTS
 from hpn.tables.axes import read_axes
 from hpn.tables.columns import Choices
 from hpn.tables.cycles import read_text
 from hpn.tables.sheets import grids_of
-from hpn.web.form.symbols import AXIS_INPUTS
 from tests.property.test_pasted import LOCALES, WRITINGS, Writing, numbers, written
 
 PARTED = WRITINGS.filter(lambda how: how.separator in "\t;,").map(

@@ -15,8 +15,8 @@ from hpn.engine.candidates import Candidate
 from hpn.engine.remedy import Alternative, Way, condition_of, growths_of, remedy_of
 from hpn.engine.selection import select
 from hpn.engine.tried import needed_of, tried
+from hpn.links.writer import to_link
 from hpn.web.form.link_reader import parse
-from hpn.web.form.link_writer import to_link
 from hpn.words.reader import GROUP, Reader
 from hpn.words.wording import rounded
 from tests.build import Json

@@ -20,8 +20,8 @@ from hpn.engine.selection import select
 from hpn.engine.tried import needed_of, tried
 from hpn.explain.calculation import calculation_of
 from hpn.explain.calculation.formula import Formula, Subtraction, value_of
+from hpn.links.writer import to_link
 from hpn.web.form.link_reader import parse
-from hpn.web.form.link_writer import to_link
 from tests.build import Json
 from tests.property.draw import at_random, motions
 from tests.property.test_calculation import NINE_DIGITS, READERS, shown

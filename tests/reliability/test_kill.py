@@ -21,9 +21,9 @@ from starlette.testclient import TestClient
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import encode, select
+from hpn.links.writer import to_link
 from hpn.store import Store
 from hpn.web.app import create_app
-from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase
 

@@ -12,7 +12,7 @@ from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import Selection, encode, select
 from hpn.files import export
-from hpn.web.form.link_writer import to_link
+from hpn.links.writer import to_link
 from hpn.words.reader import Reader
 from tests.build import LIFTING, TURNING, Json, cycle, phase, worked_example
 from tests.wire import candidate_of

@@ -19,8 +19,8 @@ from hpn.catalogue import Catalogue
 from hpn.files.report.checks import checks
 from hpn.files.report.content import content
 from hpn.files.report.pdf import pdf
+from hpn.links.writer import to_link
 from hpn.web.form.link_reader import parse
-from hpn.web.form.link_writer import to_link
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.report.cases import CASES, EVERYTHING, language, long_cycle, typed_export_of

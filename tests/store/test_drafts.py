@@ -9,10 +9,10 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application, InputError
 from hpn.engine.selection import encode, select
+from hpn.links.writer import to_link
 from hpn.web.app import create_app
 from hpn.web.archive import Labels, draft_of
 from hpn.web.door.pools import SMALL_BYTES
-from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement

@@ -11,9 +11,9 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application
 from hpn.engine.checks import BY_CODE
+from hpn.links.writer import to_link
 from hpn.store.saved import packed, unpacked
 from hpn.web.app import create_app
-from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement

@@ -12,9 +12,9 @@ from hpn.application.faults import faults_of
 from hpn.application.input_fields import FIELDS
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
+from hpn.links.writer import to_link
 from hpn.web.form.form import Form, for_reader
 from hpn.web.form.link_reader import parse
-from hpn.web.form.link_writer import to_link
 from hpn.words.reader import Reader
 from tests.build import Json, answer, candidate, check, notices, worked_example
 from tests.conftest import Supplement

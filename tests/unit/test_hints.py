@@ -2,8 +2,8 @@
 
 import pytest
 
+from hpn.links.symbols import SYMBOLS, mechanism_symbols
 from hpn.physics.motion.mechanisms import TYPES
-from hpn.web.form.symbols import SYMBOLS, mechanism_symbols
 from hpn.words.reader import LANGUAGE_NAMES, Reader
 
 HINTS = {symbol.hint for symbol in (*SYMBOLS, *(each for kind in TYPES for each in mechanism_symbols(kind)))} - {""}

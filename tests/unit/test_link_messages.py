@@ -4,8 +4,8 @@ from urllib.parse import parse_qsl
 
 import pytest
 
+from hpn.links.writer import to_link
 from hpn.web.form import link_reader
-from hpn.web.form.link_writer import to_link
 from tests.unit.test_links import PHASE, found, read
 
 

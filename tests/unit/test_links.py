@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from pydantic import BaseModel
 
 from hpn.application import Application
-from hpn.web.form import link_reader, symbols
+from hpn.links import symbols
+from hpn.links.writer import to_link
+from hpn.web.form import link_reader
 from hpn.web.form.form import Form
-from hpn.web.form.link_writer import to_link
 from tests.property.draw import NAMES
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hpn.application import Application
-from hpn.web.form.link_writer import to_link
+from hpn.links.writer import to_link
 from tests.property.draw import motions
 from tests.unit.test_links import PHASE, applications, found, loaded, names, read, signed, some
 

@@ -9,8 +9,8 @@ from hpn.catalogue import Catalogue
 from hpn.engine.duty import Duty
 from hpn.engine.remedy import Way
 from hpn.engine.tried import followed
+from hpn.links.writer import to_link
 from hpn.web.form.link_reader import parse
-from hpn.web.form.link_writer import to_link
 from tests.build import Json, answer, candidate, cycle, notices, phase
 from tests.reference.test_shaft_load import MOVE, RACK, axis
 from tests.unit.test_application import refused

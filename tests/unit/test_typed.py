@@ -5,10 +5,10 @@ from fractions import Fraction
 import pytest
 
 from hpn.application import Application
+from hpn.links.writer import to_link
 from hpn.tables.numbers import Entry, Kind, Notation, read_decimal, read_value
 from hpn.web.form import link_reader
 from hpn.web.form.form import for_reader
-from hpn.web.form.link_writer import to_link
 from hpn.web.form.offers import beside_fields
 from hpn.words import spellings, units
 from hpn.words.reader import Reader

@@ -17,7 +17,7 @@ from hpn.explain.drawings import Subject
 from hpn.explain.drawings.bearing import bearing_figure
 from hpn.explain.drawings.envelope import envelope_scene
 from hpn.explain.drawings.picture import bearing_picture
-from hpn.web.form.symbols import BY_NAME
+from hpn.links.symbols import BY_NAME
 from hpn.words.reader import Reader, catalogue
 from tests.build import cycle, phase
 from tools.messages import BACKEND, TEMPLATES, texts

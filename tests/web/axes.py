@@ -2,11 +2,11 @@
 
 from typing import Any
 
+from hpn.links.symbols import AXIS_INPUTS
 from hpn.tables.axes import read_axes
 from hpn.tables.columns import Choices
 from hpn.tables.sheets import grids_of
 from hpn.tables.table import Choice, Table
-from hpn.web.form.symbols import AXIS_INPUTS
 
 WIRE = tuple(AXIS_INPUTS.units)
 HEAD = "Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]"

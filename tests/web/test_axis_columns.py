@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 
-from hpn.web.form.symbols import AXIS_INPUTS
+from hpn.links.symbols import AXIS_INPUTS
 from hpn.words import spellings
 from hpn.words.reader import LANGUAGES, Reader
 from tests.web.axes import HEAD, asked, read

@@ -11,9 +11,9 @@ from urllib.parse import parse_qsl, urlencode
 import pytest
 from starlette.testclient import TestClient
 
+from hpn.links.writer import to_link
 from hpn.web.app import create_app
 from hpn.web.form import link_reader
-from hpn.web.form.link_writer import to_link
 from hpn.web.form.own_part import carried_over, pairs_of_own, written
 from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, worked_example

@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 from openpyxl import Workbook
 
+from hpn.links.symbols import AXIS_INPUTS
 from hpn.tables.axes import read_axes
 from hpn.tables.columns import Choices
 from hpn.tables.table import Table
 from hpn.tables.workbooks import sheets_of
-from hpn.web.form.symbols import AXIS_INPUTS
 from tests.web.axes import HEAD, WIRE, asked
 
 

@@ -12,9 +12,9 @@ from starlette.testclient import TestClient
 from hpn.application import Application
 from hpn.application.input_fields import PHASE_FIGURES
 from hpn.cli import main
+from hpn.links.writer import to_link
 from hpn.tables.cycles import read_text
 from hpn.web.form.link_reader import parse
-from hpn.web.form.link_writer import to_link
 from tests.build import LIFTING, TURNING, cycle, phase
 
 MOTOR = {"inertia_kgm2": 1e-4, "inertia_ratio": 5, "rated_speed_rpm": 3000, "peak_torque_Nm": 20}

@@ -8,7 +8,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.catalogue import Catalogue
-from hpn.web.form.labels import LABELS
+from hpn.links.labels import LABELS
 from tests.build import worked_example
 from tests.state import state_of
 from tests.web.test_carried import Fields

@@ -9,13 +9,13 @@ from pydantic import ValidationError
 from starlette.testclient import TestClient
 
 from hpn.application import Application
+from hpn.links import symbols
+from hpn.links.labels import LABELS
+from hpn.links.rows import MOVE_COLUMNS
+from hpn.links.writer import to_link
 from hpn.physics.motion.moves import Stroke, Turn
-from hpn.web.form import symbols
 from hpn.web.form.form import Form
-from hpn.web.form.labels import LABELS
 from hpn.web.form.link_reader import parse
-from hpn.web.form.link_writer import to_link
-from hpn.web.form.rows import MOVE_COLUMNS
 from hpn.web.form.ways import EXAMPLES, START
 from hpn.web.pages.templates import parted
 from tests.web.test_carried import Fields

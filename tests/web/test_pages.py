@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
+from hpn.links.symbols import PHASE_SYMBOLS, SYMBOLS
 from hpn.web.app import create_app
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
-from hpn.web.form.symbols import PHASE_SYMBOLS, SYMBOLS
 from hpn.words.quantities import QUANTITIES
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"

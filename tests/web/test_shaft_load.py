@@ -8,8 +8,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.application import Application
+from hpn.links.writer import to_link
 from hpn.web.app import create_app
-from hpn.web.form.link_writer import to_link
 from tests.reference.test_shaft_load import MOVE, RACK, axis
 
 

@@ -4,9 +4,9 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.application import Application
+from hpn.links.writer import to_link
 from hpn.web.door.bodies import pairs_of
 from hpn.web.form import link_reader
-from hpn.web.form.link_writer import to_link
 from tests.build import TURNING, Json, cycle, phase, worked_example
 
 PATH = "/api/v1/select"

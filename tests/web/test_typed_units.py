@@ -7,9 +7,9 @@ from html import unescape
 import pytest
 from starlette.testclient import TestClient
 
+from hpn.links.symbols import units_of
 from hpn.tables.numbers import Entry, Notation
 from hpn.web.form.link_reader import parse
-from hpn.web.form.symbols import units_of
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 

@@ -11,7 +11,7 @@ from hpn.catalogue import load_catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
 from hpn.engine.selection import Selection, encode, select
-from hpn.web.form.link_writer import to_link
+from hpn.links.writer import to_link
 from hpn.web.settings import Settings
 from hpn.words.wording import telling_decimals
 

@@ -18,13 +18,13 @@ from hpn.documents.revision import SAVED, is_label
 from hpn.engine.kept import UnreadableReplyError, decode, fields_of
 from hpn.engine.selection import Selection, encode, select
 from hpn.explain.differences import Difference, FigureDifference, differences, figure_differences
+from hpn.links.labels import FIELDS, query_of
+from hpn.links.writer import to_link
 from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
 from hpn.web.columns import columns_of
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import FIELDS, query_of
-from hpn.web.form.link_writer import to_link
 from hpn.words.fields import Model
 from hpn.words.titles import CONTROLS, LONGEST_TITLE, NO_CONTROLS, SCHEMA_CONTROLS, Title
 from hpn.words.wording import N_, Sentence

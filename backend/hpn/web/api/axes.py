@@ -17,6 +17,7 @@ from hpn.documents.axis import MOST_AXES, MOST_BYTES, READ_ONLY, Axis
 from hpn.documents.merge import resolve
 from hpn.engine.selection import Selection, select
 from hpn.engine.selection import encode as encode_selection
+from hpn.links.writer import to_link
 from hpn.store import AxisDraft, Change, Machine, MachineDraft, Once, SavedAxis
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
@@ -30,7 +31,6 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.edits import FIELDS, Effect, after, drafted, effect_of, named, replace_axis
-from hpn.web.form.link_writer import to_link
 from hpn.web.machines import (
     apply,
     author_of,

@@ -28,6 +28,7 @@ from hpn.application.unique import RepeatedNameError
 from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.selection import Judged, Outcome
+from hpn.links.writer import to_link
 from hpn.web import spool
 from hpn.web.api import schemas
 from hpn.web.api.replies import BatchLine, BatchReply, JSONBytes, ProblemReply, encode
@@ -44,7 +45,6 @@ from hpn.web.door.bodies import (
 )
 from hpn.web.door.pools import Pool, pool_of, while_present
 from hpn.web.door.problems import MAXIMUM_ERRORS, Problem
-from hpn.web.form.link_writer import to_link
 from hpn.web.settings import Settings
 
 SLICE_ITEMS, SLICE_SECONDS = 256, 0.25

@@ -19,6 +19,8 @@ from hpn.catalogue.ordering import ordering_code
 from hpn.engine.selection import judge, select
 from hpn.files.aas import Metamodel
 from hpn.files.export import DIGITS, Export, Heading, made_by
+from hpn.links.labels import query_of as query_of_labels
+from hpn.links.writer import to_link
 from hpn.store import SavedSelection
 from hpn.web.api import schemas
 from hpn.web.archive import answer_of, url_of, with_catalogue
@@ -28,8 +30,6 @@ from hpn.web.door.conditions import etag_of, has_already
 from hpn.web.door.pools import pool_of, while_present
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.visit import absolute
-from hpn.web.form.labels import query_of as query_of_labels
-from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import linked, query_of
 from hpn.words.reader import Reader
 

@@ -10,12 +10,12 @@ from starlette.responses import Response
 from hpn.application import Application
 from hpn.engine.room import MOST_SAMPLES
 from hpn.engine.selection import Selection, encode, select
+from hpn.links.writer import to_link
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.pools import calculate
-from hpn.web.form.link_writer import to_link
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("calculator")])
 

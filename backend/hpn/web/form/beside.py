@@ -4,8 +4,8 @@
 element, so that one submission has them; their names are no others' of a link.
 """
 
+from hpn.links.symbols import BY_NAME, BY_SIZE
 from hpn.web.form.given import Pairs
-from hpn.web.form.symbols import BY_NAME, BY_SIZE
 
 PREFIX = "give-"
 

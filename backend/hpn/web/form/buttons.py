@@ -4,9 +4,9 @@ import re
 from collections.abc import Callable
 
 from hpn.application import Application
+from hpn.links.rows import OPTIONAL
 from hpn.web.form import helpers, offers, ways
 from hpn.web.form.given import REVERSES, Given
-from hpn.web.form.rows import OPTIONAL
 
 MOST_PRESSES = 50
 

@@ -6,11 +6,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from hpn.documents.common import COMMON, Common
+from hpn.links.symbols import BY_PATH, BY_SIZE, Symbol
 from hpn.tables.numbers import WAS, WRITTEN, read_value
 from hpn.web.form.form import Form, for_reader
 from hpn.web.form.given import FieldProblem, Given
 from hpn.web.form.refusals import refusal_of
-from hpn.web.form.symbols import BY_PATH, BY_SIZE, Symbol
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 

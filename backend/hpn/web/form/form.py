@@ -5,15 +5,9 @@ from dataclasses import dataclass, field, replace
 from urllib.parse import urlencode
 
 from hpn.application import Application
-from hpn.physics.motion.mechanisms import TYPES
-from hpn.tables import numbers
-from hpn.tables.by_size import BySize
-from hpn.tables.inputs import NAME
-from hpn.web.form.given import FieldProblem
-from hpn.web.form.helpers import BodyTable
-from hpn.web.form.labels import LABELS, query_of
-from hpn.web.form.rows import TOLERANCE, WIDTHS, filled
-from hpn.web.form.symbols import (
+from hpn.links.labels import LABELS, query_of
+from hpn.links.rows import TOLERANCE, WIDTHS, filled
+from hpn.links.symbols import (
     MECHANISM_SYMBOLS,
     PHASE_SYMBOLS,
     Symbol,
@@ -22,6 +16,12 @@ from hpn.web.form.symbols import (
     table_columns,
     units_of,
 )
+from hpn.physics.motion.mechanisms import TYPES
+from hpn.tables import numbers
+from hpn.tables.by_size import BySize
+from hpn.tables.inputs import NAME
+from hpn.web.form.given import FieldProblem
+from hpn.web.form.helpers import BodyTable
 from hpn.web.form.ways import START
 from hpn.words.reader import Reader
 from hpn.words.titles import numbered

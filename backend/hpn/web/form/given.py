@@ -8,13 +8,9 @@ from hpn.application import MOST_WISHES
 from hpn.application.motion import MAXIMUM_MOVES
 from hpn.application.shaft_centre import MOST_SIZES
 from hpn.application.tolerances import MOST_TOLERANCES
-from hpn.physics.motion.bodies import MOST_BODIES
-from hpn.tables.by_size import BySize, by_size
-from hpn.tables.inputs import NAME
-from hpn.tables.numbers import WAS, WRITTEN, Notation
-from hpn.web.form.labels import LABELS
-from hpn.web.form.rows import OF_ANY_ROW, SHARED, TEXT, TOLERANCE, Table, cells_of, groups_of, shown_columns
-from hpn.web.form.symbols import (
+from hpn.links.labels import LABELS
+from hpn.links.rows import OF_ANY_ROW, SHARED, TEXT, TOLERANCE, Table, cells_of, groups_of, shown_columns
+from hpn.links.symbols import (
     BODY_BY_NAME,
     BY_NAME,
     BY_SIZE,
@@ -27,6 +23,10 @@ from hpn.web.form.symbols import (
     TURN_SYMBOLS,
     units_of,
 )
+from hpn.physics.motion.bodies import MOST_BODIES
+from hpn.tables.by_size import BySize, by_size
+from hpn.tables.inputs import NAME
+from hpn.tables.numbers import WAS, WRITTEN, Notation
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.likeness import likeness
 from hpn.words.titles import faults_of

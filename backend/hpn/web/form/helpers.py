@@ -9,12 +9,12 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from hpn.links.rows import filled
+from hpn.links.symbols import BODY_BY_NAME, Symbol
 from hpn.physics.motion.bodies import Body, BodySum, sum_of
 from hpn.tables.numbers import read_value
 from hpn.web.form.given import FieldProblem, Given
 from hpn.web.form.refusals import refusal_of
-from hpn.web.form.rows import filled
-from hpn.web.form.symbols import BODY_BY_NAME, Symbol
 from hpn.words.wording import Sentence
 
 DIGITS = 6

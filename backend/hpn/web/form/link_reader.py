@@ -1,6 +1,6 @@
 """Links and the form: from the symbols of a query to the application model.
 
-The form, the address bar and every link that somebody writes by hand go through `parse`; `link_writer.to_link` is the
+The form, the address bar and every link that somebody writes by hand go through `parse`; `links.writer.to_link` is the
 way back. Names are the handbook's symbols, values are in the units of the API.
 """
 
@@ -13,20 +13,10 @@ from msgspec.structs import replace as with_values
 from pydantic import ValidationError
 
 from hpn.application import Application
-from hpn.physics.motion.mechanisms import TYPES
-from hpn.tables.by_size import BySize, by_size
-from hpn.tables.inputs import NAME
-from hpn.tables.numbers import read_value
-from hpn.web.form import tolerances
-from hpn.web.form.beside import with_beside
-from hpn.web.form.buttons import play
-from hpn.web.form.form import Form
-from hpn.web.form.given import CONDITION, REQUIRED, FieldProblem, Given, Pairs
-from hpn.web.form.helpers import BodyTable, body_table
-from hpn.web.form.labels import LABELS
-from hpn.web.form.refusals import refusal_of
-from hpn.web.form.rows import TOLERANCE, filled
-from hpn.web.form.symbols import (
+from hpn.links import tolerances
+from hpn.links.labels import LABELS
+from hpn.links.rows import TOLERANCE, filled
+from hpn.links.symbols import (
     BY_NAME,
     BY_PATH,
     BY_SIZE,
@@ -37,6 +27,16 @@ from hpn.web.form.symbols import (
     Symbol,
     move_symbols,
 )
+from hpn.physics.motion.mechanisms import TYPES
+from hpn.tables.by_size import BySize, by_size
+from hpn.tables.inputs import NAME
+from hpn.tables.numbers import read_value
+from hpn.web.form.beside import with_beside
+from hpn.web.form.buttons import play
+from hpn.web.form.form import Form
+from hpn.web.form.given import CONDITION, REQUIRED, FieldProblem, Given, Pairs
+from hpn.web.form.helpers import BodyTable, body_table
+from hpn.web.form.refusals import refusal_of
 from hpn.words.designations import OTHERS
 from hpn.words.terms import FOR_OTHERS
 from hpn.words.titles import LONGEST_NAME, faults_of

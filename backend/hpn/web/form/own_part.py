@@ -8,11 +8,8 @@ from urllib.parse import quote
 from pydantic import ValidationError
 
 from hpn.application.tolerances import Tolerance
-from hpn.tables.by_size import BySize, Part
-from hpn.web.form.given import CYCLE_NAMES, Pairs
-from hpn.web.form.link_writer import shortened
-from hpn.web.form.rows import TOLERANCE
-from hpn.web.form.symbols import (
+from hpn.links.rows import TOLERANCE
+from hpn.links.symbols import (
     BY_SIZE,
     MECHANISM_SYMBOLS,
     MOTION_PATH,
@@ -21,7 +18,10 @@ from hpn.web.form.symbols import (
     Symbol,
     move_symbols,
 )
-from hpn.web.form.tolerances import text_of
+from hpn.links.tolerances import text_of
+from hpn.links.writer import shortened
+from hpn.tables.by_size import BySize, Part
+from hpn.web.form.given import CYCLE_NAMES, Pairs
 from hpn.words.designations import OTHERS
 
 Json = Mapping[str, Any]

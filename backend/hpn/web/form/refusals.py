@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from hpn.application.tolerances import WITH_VALUES
+from hpn.links.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
 from hpn.physics.motion.refusals import REFUSALS
-from hpn.web.form.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
 from hpn.words.terms import PROFILES
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence, Value, listed

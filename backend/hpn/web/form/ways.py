@@ -7,12 +7,12 @@ from urllib.parse import parse_qsl, urlencode
 
 from hpn.application import Application, DutyCycle
 from hpn.application.phase import Phase
+from hpn.links.rows import OF_ANY_ROW
+from hpn.links.symbols import PHASE_SYMBOLS, mechanism_symbols
+from hpn.links.writer import to_link
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry
 from hpn.web.form.given import REST_FRICTION, REVERSES, Given, Pairs, is_of_one_way
-from hpn.web.form.link_writer import to_link
-from hpn.web.form.rows import OF_ANY_ROW
-from hpn.web.form.symbols import PHASE_SYMBOLS, mechanism_symbols
 from hpn.words.wording import N_
 
 PHASES, MOTION = "phases", "motion"

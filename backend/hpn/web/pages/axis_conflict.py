@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from urllib.parse import urlencode
 
 from hpn.catalogue import Catalogue
+from hpn.links.rows import TOLERANCE
+from hpn.links.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME, units_of
+from hpn.links.symbols import LABELS as NAMES
 from hpn.web.door.visit import current
 from hpn.web.form.given import CYCLE_NAMES, Pairs
 from hpn.web.form.own_part import written
-from hpn.web.form.rows import TOLERANCE
-from hpn.web.form.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME, units_of
-from hpn.web.form.symbols import LABELS as NAMES
 from hpn.web.pages.axis_view import OPENED, VERSION, WITHOUT, AxisView, stored_pairs
 from hpn.words.wording import N_
 

@@ -14,17 +14,17 @@ from hpn.catalogue.ordering import OrderingCode, ordering_code, read_ordering_co
 from hpn.documents.axis import Axis
 from hpn.documents.common import COMMON, flat, is_common
 from hpn.documents.merge import Resolved, resolve
+from hpn.links.rows import TEXT, TOLERANCE
+from hpn.links.symbols import BY_NAME, BY_PATH, COMMON_NAMES, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.links.writer import to_link
 from hpn.store import Machine, SavedAxis
 from hpn.tables.numbers import read_value
 from hpn.web.columns import common_of, own_of, without_of
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
 from hpn.web.form.given import FieldProblem, Pairs
-from hpn.web.form.link_writer import to_link
 from hpn.web.form.own_part import carried_over, pairs_of_own, written
 from hpn.web.form.refusals import refusal_of
-from hpn.web.form.rows import TEXT, TOLERANCE
-from hpn.web.form.symbols import BY_NAME, BY_PATH, COMMON_NAMES, MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.words.wording import Sentence
 
 Json = dict[str, Any]

@@ -19,6 +19,8 @@ from hpn.engine.candidates import REASONS, Candidate
 from hpn.engine.selection import Selection, judge
 from hpn.engine.tried import tried
 from hpn.explain.drawings import Pictures, default_condition
+from hpn.links.labels import query_of
+from hpn.links.writer import to_link
 from hpn.tables.numbers import WRITTEN
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, read_form
@@ -28,8 +30,6 @@ from hpn.web.form import link_reader
 from hpn.web.form.condition import Condition, condition_of
 from hpn.web.form.form import Form, address_of_empty, for_reader
 from hpn.web.form.given import CYCLE_NAMES, FieldProblem
-from hpn.web.form.labels import query_of
-from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK, WRITTEN_AT
 from hpn.web.form.offers import beside_fields
 from hpn.web.pages.axis_view import AxisView

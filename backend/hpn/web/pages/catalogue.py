@@ -14,12 +14,12 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.catalogue.ordering import OrderingCode, ordering_code
 from hpn.explain.drawings import gear_envelope, published_condition
+from hpn.links.labels import query_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of
 from hpn.web.door.pools import worked
 from hpn.web.door.visit import absolute, current
 from hpn.web.form.condition import condition_of
-from hpn.web.form.labels import query_of
 from hpn.web.form.linked import carried_pairs, onward, query_part
 from hpn.web.pages.gear_figures import series_figures, supplements_for
 from hpn.web.pages.rendering import page

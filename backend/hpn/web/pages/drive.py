@@ -13,8 +13,8 @@ from hpn.engine.motors import MotorUse, SizeWithMotor, asks_inertia_ratio, motor
 from hpn.engine.notices import on_motor_torques
 from hpn.engine.selection import Selection
 from hpn.explain.calculation.motor import BY_CURVE, LOSS_FREE, STATED
+from hpn.links.writer import to_link
 from hpn.physics import stiffness
-from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import LONGEST_LINK
 from hpn.words.wording import N_, Sentence
 

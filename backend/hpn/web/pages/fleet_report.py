@@ -12,10 +12,10 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.fleet.listing import Listing, applications_of, rows_of
+from hpn.links.labels import query_of
+from hpn.links.writer import to_link
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.door.visit import VISIT, Visit
-from hpn.web.form.labels import query_of
-from hpn.web.form.link_writer import to_link
 from hpn.web.pages.assets import DIST, Assets
 from hpn.web.pages.fleet_view import SHOWN, FleetView, by_need, foremost, weights_of
 from hpn.web.pages.templates import environment

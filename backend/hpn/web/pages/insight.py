@@ -11,9 +11,9 @@ from hpn.catalogue import Catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import Selection
 from hpn.explain.comparison import MOST_PINS, RowGroup, groups_of, lighter_miss, undominated
+from hpn.links.writer import to_link
 from hpn.web.form.form import Form
 from hpn.web.form.given import FieldProblem
-from hpn.web.form.link_writer import to_link
 from hpn.words.wording import N_, Sentence
 
 

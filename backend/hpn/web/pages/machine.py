@@ -16,6 +16,7 @@ from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
 from hpn.documents.revision import SAVED, is_label
+from hpn.links.labels import FIELDS, TITLE_BLOCK
 from hpn.store import Machine, RevisionDraft, StoreUnavailableError
 from hpn.web.columns import revision_of
 from hpn.web.door.access import ADMIN, admit
@@ -25,7 +26,6 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
 from hpn.web.form.common import BY_SYMBOL, FIRST
-from hpn.web.form.labels import FIELDS, TITLE_BLOCK
 from hpn.web.machines import require_seen
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.machine_editing import OF_MANY, Editing, opened_common

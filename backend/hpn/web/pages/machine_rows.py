@@ -9,10 +9,10 @@ from hpn.engine.remedy import condition_of
 from hpn.engine.selection import select
 from hpn.engine.tried import needed_of
 from hpn.fleet.faults import Reason
+from hpn.links.labels import query_of
+from hpn.links.writer import to_link
 from hpn.web.columns import answer_in, resolved
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
-from hpn.web.form.labels import query_of
-from hpn.web.form.link_writer import to_link
 from hpn.web.pages.machine_view import MachineView, Row
 from hpn.words.titles import faults_of
 from hpn.words.wording import Sentence

@@ -19,6 +19,7 @@ from hpn.catalogue import Catalogue
 from hpn.fleet.beside import read_machine
 from hpn.fleet.faults import Fault
 from hpn.fleet.order import MOST_AXES, MOST_PHASES
+from hpn.links.symbols import AXIS_INPUTS
 from hpn.store import MachineDraft, NoRoomError, ShareSpentError, StoreUnavailableError
 from hpn.store.machines import MOST_OF_CALLER
 from hpn.tables.files import Wanted, packed, unpacked
@@ -31,7 +32,6 @@ from hpn.web.door.pools import compute, compute_beside
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.uploads import read_parts
 from hpn.web.fleets import worked as worked_beside
-from hpn.web.form.symbols import AXIS_INPUTS
 from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.reading import work_of
 from hpn.web.pages.rendering import page

@@ -17,6 +17,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import pointer, sentence_of
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
+from hpn.links.rows import TEXT, filled, used_columns
+from hpn.links.symbols import BY_NAME, PHASE_BY_NAME
+from hpn.links.writer import to_link
 from hpn.tables.files import Wanted, packed, tidied, unpacked
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
 from hpn.tables.outcomes import MOST_ROWS_TRIED
@@ -31,10 +34,7 @@ from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
 from hpn.web.form.given import CYCLE_NAMES, Given, Pairs
-from hpn.web.form.link_writer import to_link
 from hpn.web.form.linked import query_part
-from hpn.web.form.rows import TEXT, filled, used_columns
-from hpn.web.form.symbols import BY_NAME, PHASE_BY_NAME
 from hpn.web.pages import calculator
 from hpn.web.pages.axis_view import OF_AXIS, PLACE, place_of
 from hpn.web.pages.reading import read

@@ -19,8 +19,8 @@ from hpn.engine.tried import needed_of
 from hpn.explain.comparison import lighter_miss
 from hpn.explain.drawings import Pictures, Subject
 from hpn.files.export import DIGITS
+from hpn.links.writer import to_link
 from hpn.web.door.visit import current
-from hpn.web.form.link_writer import to_link
 from hpn.web.pages.drive import Drive
 from hpn.words.quantities import LISTED
 from hpn.words.reader import Reader

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
+from hpn.links.labels import TITLE_BLOCK
 from hpn.store import Machine, SavedSelection, Store
 from hpn.web.archive import Line, changeable, not_found
 from hpn.web.door.access import admit
@@ -16,7 +17,6 @@ from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.form.labels import TITLE_BLOCK
 from hpn.web.form.linked import onward
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saving import REASON

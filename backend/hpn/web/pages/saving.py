@@ -12,6 +12,7 @@ from starlette.responses import RedirectResponse, Response
 
 from hpn.application import InputError
 from hpn.catalogue import Catalogue
+from hpn.links.labels import FIELDS, TITLE_BLOCK, query_of
 from hpn.store import Draft, StoreUnavailableError
 from hpn.web.archive import Labels, draft_of, keep, url_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
@@ -22,7 +23,6 @@ from hpn.web.door.problems import Problem
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
 from hpn.web.form.given import Pairs
-from hpn.web.form.labels import FIELDS, TITLE_BLOCK, query_of
 from hpn.web.form.linked import query_part
 from hpn.web.pages import calculator
 from hpn.web.pages.calculator import Answer

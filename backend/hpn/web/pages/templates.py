@@ -26,12 +26,13 @@ from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
 from hpn.installed import data_folder, has_extra
+from hpn.links import symbols
+from hpn.links.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
-from hpn.web.form import symbols, ways
+from hpn.web.form import ways
 from hpn.web.form.form import ROWS_IN_TABLE
 from hpn.web.form.linked import carried_pairs, onward
-from hpn.web.form.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
 from hpn.web.pages import assets
 from hpn.web.pages.notes import head_and_reason, note_groups
 from hpn.web.pages.result import preview_of

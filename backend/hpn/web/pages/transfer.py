@@ -9,12 +9,12 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application, DutyCycle
+from hpn.links.symbols import columns_used
 from hpn.tables.cells import Decimal, harmless, written
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form.linked import linked, query_of
-from hpn.web.form.symbols import columns_used
 
 
 async def application_file(request: Request) -> Response:

@@ -11,12 +11,12 @@ from hpn.application.phase import Phase
 from hpn.catalogue import Catalogue
 from hpn.documents.common import COMMON
 from hpn.engine.notice import AREAS
+from hpn.links import labels
+from hpn.links.rows import OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
 from hpn.tables.inputs import NAME, PHASE, Input, Inputs
 from hpn.tables.numbers import Kind
-from hpn.web.form import labels
-from hpn.web.form.rows import OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
 from hpn.words.quantities import CANDIDATE, INPUTS, QUANTITIES
 from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
 from hpn.words.units import suffix_of

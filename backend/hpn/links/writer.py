@@ -18,9 +18,9 @@ from hpn.application import (
     Requirements,
 )
 from hpn.application.motion import Motion
+from hpn.links.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
+from hpn.links.tolerances import written
 from hpn.tables.by_size import BySize, Part
-from hpn.web.form.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
-from hpn.web.form.tolerances import written
 from hpn.words.designations import OTHERS
 
 _EMPTY_LOAD = OutputLoad()

@@ -10,8 +10,8 @@ from typing import Any
 
 from hpn.application import Application
 from hpn.application.tolerances import MOST_TOLERANCES, Deviation, Tolerance
+from hpn.links.symbols import BY_NAME, BY_PATH, MOTION_PATH, MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
 from hpn.tables.numbers import read_value
-from hpn.web.form.symbols import BY_NAME, BY_PATH, MOTION_PATH, MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
 from hpn.words.wording import N_, Sentence
 
 LONGEST = 200
