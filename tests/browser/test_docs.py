@@ -14,7 +14,7 @@ def test_the_document_is_a_page_that_sends_requests(visitor: Visitor) -> None:
 
     operation.get_by_role("button").first.click()
     operation.get_by_role("button", name="Try it out").click()
-    operation.get_by_role("textbox").fill(json.dumps(worked_example()))
+    operation.locator("textarea").fill(json.dumps(worked_example()))
     operation.get_by_role("button", name="Execute").click()
 
     answer = operation.locator(".live-responses-table")

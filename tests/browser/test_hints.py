@@ -19,7 +19,7 @@ def tops(page: Page) -> list[float]:
 @pytest.mark.parametrize("width", [390, 1440])
 def test_a_hint_covers_the_next_row_moves_nothing_and_lets_clicks_through(visitor: Visitor, width: int) -> None:
     page = visitor.open(EXAMPLE, width)
-    field, hint = page.get_by_label("Load coefficient"), page.locator("#h-fw")
+    field, hint = page.get_by_role("combobox", name="Load coefficient"), page.locator("#h-fw")
     expect(page.locator("#application .field > .hint:visible")).to_have_count(0)
     expect(field).to_have_accessible_description("1–1.2 smooth, 1.2–1.5 normal, 1.5–3 with impact")
     field.scroll_into_view_if_needed()

@@ -114,12 +114,12 @@ def _compared(comparison: Comparison, continued: bool) -> list[Part]:
 
 @dataclass(frozen=True, slots=True)
 class Addition:
-    """Sums of a step as columns: a head for each, rows by the numbers of their phases, and what each adds up to.
+    """Sums of a step as columns: a head for each as MathML and as text, rows by phase, and what each adds up to.
 
     `left_out` is the number of phases in the middle that are not written out.
     """
 
-    heads: list[str]
+    heads: list[tuple[str, str]]
     rows: list[tuple[int, list[str]]]
     totals: list[str]
     left_out: int
@@ -141,7 +141,7 @@ def addition(reader: Reader, step: Step) -> Addition | None:
     count = len(series[0])
     places = range(count) if count <= SHOWN_TERMS else [*range(SHOWN_TERMS - 2), count - 1]
     return Addition(
-        [mathml(reader, (formula, False)) for _, formula in columns],
+        [(mathml(reader, (formula, False)), _Liner(reader, False).write(formula)) for _, formula in columns],
         [(place + 1, [_written(reader, each[place]) for each in values]) for place in places],
         [total(reader, one) if formula is one.general else "" for one, formula in columns],
         count - len(places),
