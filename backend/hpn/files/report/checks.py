@@ -88,7 +88,7 @@ def _sums(step: Step, reader: Reader) -> Row | None:
     said = reader.text(N_("Only some of the %(count)s phases are written out; the result includes all of them."))
     rows = [[str(place), *values] for place, values in sums.rows]
     return {
-        "heads": sums.heads,
+        "heads": [math for math, _ in sums.heads],
         "rows": [*rows, ["Σ", *sums.totals]],
         "note": said % {"count": len(sums.rows) + sums.left_out} if sums.left_out else "",
     }
