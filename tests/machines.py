@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Raw
 
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import Asked, answers
+from hpn.documents.answers import AxisQuestion, answers
 from hpn.documents.axis import Axis
 from hpn.documents.common import Common
 from hpn.documents.merge import resolve
@@ -26,7 +26,7 @@ def frozen(axes: Sequence[Json], catalogue: Catalogue, common: Json | None = Non
     sent = Common.model_validate(common or {}).sent
     own = [Axis.model_validate({name: value for name, value in axis.items() if name != "number"}) for axis in axes]
     resolved = [resolve(axis.application, sent, axis.without) for axis in own]
-    asked = [Asked(each, axis.ordering_code) for each, axis in zip(resolved, own, strict=True)]
+    asked = [AxisQuestion(each, axis.ordering_code) for each, axis in zip(resolved, own, strict=True)]
     numbers = [axis.get("number", place) for place, axis in enumerate(axes, 1)]
     return Frozen(
         **{"title": None, "reference": None, "author": None, "note": None, **block},

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.faults import Fault, kept, reasons_of
+from hpn.fleet.faults import CellFault, kept, reasons_of
 from hpn.fleet.machine import batch_of, kept_of, table_of
 from hpn.fleet.outcome import outcome
 from hpn.words.reader import Reader
@@ -90,7 +90,7 @@ def test_a_reason_is_kept_with_its_values(catalogue: Catalogue) -> None:
     (cell,) = table_of(found.answers)["faults"].to_pylist()
     (reason,) = reasons_of(cell)
 
-    assert kept([Fault(0, reason.column, reason.sentence, reason.code)]) == cell
+    assert kept([CellFault(0, reason.column, reason.sentence, reason.code)]) == cell
     assert reason.sentence.text == 'row 9: must be a number, such as 9.3, not "x;n: 5"'
     assert Reader("de").told(reason.sentence) == 'Zeile 9: muss eine Zahl sein, z. B. 9.3, nicht "x;n: 5"'
 

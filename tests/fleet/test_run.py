@@ -22,7 +22,7 @@ from hpn.fleet import run as fleet_run
 from hpn.fleet.cluster import interrupts_held
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.run import Outcome, Size, here, size_fleet, threads
-from hpn.fleet.tables import Batch, Progress
+from hpn.fleet.tables import Progress, RowBatch
 from tests.fleet.tables import row_of, write
 from tests.property.draw import at_random
 from tests.reliability.faults import as_user, catalogue_for_all, full, small_disk
@@ -69,7 +69,7 @@ def test_few_axes_are_read_ahead_of_what_is_written(
 def test_two_runs_never_write_one_file(many: Path, tmp_path: Path, catalogue: Catalogue) -> None:
     order = Order(many, tmp_path / "out.parquet")
 
-    def meanwhile(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+    def meanwhile(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
         with pytest.raises(FleetError, match="another run is writing it"):
             size_fleet(order, catalogue)
         yield from here(size, batches)
@@ -79,7 +79,7 @@ def test_two_runs_never_write_one_file(many: Path, tmp_path: Path, catalogue: Ca
 
 
 def test_an_error_midway_leaves_no_file(many: Path, tmp_path: Path, catalogue: Catalogue) -> None:
-    def fails(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+    def fails(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
         yield size(next(batches))
         raise MemoryError
 

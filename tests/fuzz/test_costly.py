@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from hpn.tables.files import Wanted
+from hpn.tables.files import TableBounds
 from hpn.tables.reading import Reading, reading_of
 from hpn.tables.sheets import MAXIMUM_CHARACTERS
 from hpn.tables.table import Table
@@ -73,7 +73,7 @@ def peak_of(beside: ProcessBeside) -> int:
 
 
 @pytest.mark.parametrize(("name", "wanted"), CASES)
-def test_a_file_is_read_or_refused_within_its_bounds(beside: ProcessBeside, name: str, wanted: Wanted) -> None:
+def test_a_file_is_read_or_refused_within_its_bounds(beside: ProcessBeside, name: str, wanted: TableBounds) -> None:
     content = made(name)
     assert len(content) <= SMALL_BYTES or name in LARGER
 

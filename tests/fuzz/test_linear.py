@@ -23,7 +23,7 @@ from hpn.tables.axes import read_axes
 from hpn.tables.cells import harmless, tidy
 from hpn.tables.columns import Choices
 from hpn.tables.cycles import read_grids
-from hpn.tables.files import Wanted
+from hpn.tables.files import TableBounds
 from hpn.tables.headings import LONGEST_WRITTEN, parts_of
 from hpn.tables.numbers import Notation, read_value, to_fields
 from hpn.tables.reading import reading_of
@@ -192,7 +192,7 @@ def test_a_long_cell_costs_no_more_steps_than_one_of_half_its_length(place: str,
 
 @pytest.mark.parametrize("wanted", [PHASES, AXES], ids=["cycle", "machine"])
 def test_a_text_and_a_workbook_of_such_cells_cost_twice_as_much_at_most(
-    wanted: Wanted, soak: bool, given: list[int]
+    wanted: TableBounds, soak: bool, given: list[int]
 ) -> None:
     for kind in few_kinds() if soak else [*SIGNS, *REPORTED][::5]:
         for make in (as_text, as_workbook):

@@ -15,7 +15,7 @@ from hpn.engine.candidates import FIGURES
 from hpn.engine.kept import UnreadableReplyError, decode
 from hpn.engine.selection import encode, select
 from hpn.files.aas.submodel import package
-from hpn.files.export import Export, Heading
+from hpn.files.export import Export, ExportTitle
 from hpn.files.report.content import content
 from hpn.files.workbook.workbook import workbook
 from hpn.links.writer import to_link
@@ -84,7 +84,7 @@ PLACES = {name: sorted(set(fields_of(reply_of(name)))) for name in NAMES}
 def export_of(name: str, reply: bytes) -> Export:
     """Export of a saved answer."""
     application = Application.model_validate(APPLICATIONS[name])
-    return Export(application, decode(reply), "/", Heading(name), CREATED, catalogue=CATALOGUE, reply=reply)
+    return Export(application, decode(reply), "/", ExportTitle(name), CREATED, catalogue=CATALOGUE, reply=reply)
 
 
 @pytest.fixture(scope="module")

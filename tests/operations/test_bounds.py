@@ -19,7 +19,7 @@ import pytest
 
 from hpn.tables.cells import Figure
 from hpn.tables.reading import Reading, reading_of
-from hpn.web.door.beside import Answer, Bounds
+from hpn.web.door.beside import Bounds, CallResult
 from hpn.web.door.pools import TOO_LARGE, Places, Pool
 from hpn.web.door.problems import Problem
 from hpn.web.pages.paste import WANTED
@@ -123,7 +123,7 @@ class Trap:
 def test_an_answer_is_never_run(head: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises((EOFError, ValueError)):
-        Answer.received(io.BytesIO(head + pickle.dumps(Trap())))
+        CallResult.received(io.BytesIO(head + pickle.dumps(Trap())))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -18,7 +18,7 @@ from fastapi.routing import iter_route_contexts
 from starlette.requests import Request
 
 from hpn.web.app import create_app
-from hpn.web.door.beside import Answer
+from hpn.web.door.beside import CallResult
 from hpn.web.door.observation import GONE
 from hpn.web.door.pools import Places, Pool, while_present
 from hpn.web.door.problems import Problem
@@ -190,7 +190,7 @@ async def test_a_service_that_ends_ends_work_beside_and_closes_nothing_that_is_r
     pool: Pool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The answer is read late, so that a pipe closed at once would be found closed."""
-    file, receive = tmp_path / "beats", Answer.received
+    file, receive = tmp_path / "beats", CallResult.received
 
     def receive_late(pipe: Any) -> Any:
         while not file.exists():
@@ -199,7 +199,7 @@ async def test_a_service_that_ends_ends_work_beside_and_closes_nothing_that_is_r
         time.sleep(0.1)
         return receive(pipe)
 
-    monkeypatch.setattr(Answer, "received", receive_late)
+    monkeypatch.setattr(CallResult, "received", receive_late)
     work = asyncio.create_task(pool.run_beside(partial(beat, file)))
     while not file.exists():
         await asyncio.sleep(0.01)

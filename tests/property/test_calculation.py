@@ -10,7 +10,7 @@ from hypothesis import example, given
 
 from hpn.application import Application
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.explain.calculation import Line, Step
+from hpn.explain.calculation import EquationLine, Step
 from hpn.explain.calculation.formula import value_of
 from hpn.explain.calculation.mathml import addition, compared, in_symbols, result, substituted
 from hpn.words.reader import Reader
@@ -136,7 +136,7 @@ def sides(markup: str) -> list[list[Element]]:
     return parts
 
 
-def shown(line: Line, reader: Reader) -> tuple[float, float]:
+def shown(line: EquationLine, reader: Reader) -> tuple[float, float]:
     """Value of the substituted numbers of a line, and the value that the page shows for them."""
     (_, [formula]), (_, [first], *_) = sides(substituted(reader, line)), sides(result(reader, line))
     return worked_out(formula, reader), worked_out(first, reader)

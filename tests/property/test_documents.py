@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from hpn.application import Application
 from hpn.catalogue import load_catalogue
-from hpn.documents.answers import Asked, answer_of, answers
+from hpn.documents.answers import AxisQuestion, answer_of, answers
 from hpn.documents.common import COMMON, Common
 from hpn.documents.gears import Placed, gears_of
 from hpn.documents.merge import resolve
@@ -160,7 +160,7 @@ def test_own_and_common_values_merge_as_the_contract_says(own: Json, common: Jso
 def test_axes_together_are_answered_as_each_alone(owns: list[Json], common: Json) -> None:
     resolved = [resolve(own, nested(common)) for own in owns]
 
-    for one, answer in zip(resolved, answers([Asked(one) for one in resolved], CATALOGUE), strict=True):
+    for one, answer in zip(resolved, answers([AxisQuestion(one) for one in resolved], CATALOGUE), strict=True):
         if one.application is None:
             assert answer.status == "open" and answer.faults and answer.designation is None
             continue

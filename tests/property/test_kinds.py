@@ -5,12 +5,12 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from hpn.engine.kinds import NO_GEAR, Choices, fewest_kinds
+from hpn.engine.kinds import NO_GEAR, GearChoices, fewest_kinds
 
 MACHINES = 1_000
 
 
-def _machine(seed: int) -> Choices:
+def _machine(seed: int) -> GearChoices:
     """A machine of up to 12 axes and 9 gears, of equal weights among others, as its axes have it."""
     draw = np.random.default_rng(seed)
     count, gears = int(draw.integers(1, 13)), int(draw.integers(1, 10))
@@ -18,10 +18,10 @@ def _machine(seed: int) -> Choices:
     weight[draw.random(gears) < 0.1] = np.nan
     suits = draw.random((count, gears)) < draw.uniform(0.1, 0.8)
     own = [draw.choice(np.flatnonzero(row)) if row.any() and draw.random() < 0.9 else NO_GEAR for row in suits]
-    return Choices(suits, draw.random((count, gears)), weight, draw.integers(1, 6, count), np.array(own, np.intp))
+    return GearChoices(suits, draw.random((count, gears)), weight, draw.integers(1, 6, count), np.array(own, np.intp))
 
 
-def _lightest_by_hand(machine: Choices, count: int) -> float:
+def _lightest_by_hand(machine: GearChoices, count: int) -> float:
     """Least weight of `count` gears or fewer in kg, by trying every set; infinite where none serves every axis."""
     gears = [gear for gear in range(len(machine.weight_kg)) if not np.isnan(machine.weight_kg[gear])]
     rows = [[gear for gear in gears if machine.suits[axis, gear]] for axis in range(len(machine.suits))]
@@ -58,14 +58,14 @@ def test_a_list_that_is_lightest_stays_as_it_is() -> None:
     """Each axis has the only lightest gear: with as many kinds nothing changes."""
     weight = np.array([1.0, 1.0, 3.0])
     suits = np.array([[True, True, True], [True, True, True], [False, False, True]])
-    machine = Choices(suits, np.full((3, 3), 0.5), weight, np.array([1, 1, 2]), np.array([1, 0, 2]))
+    machine = GearChoices(suits, np.full((3, 3), 0.5), weight, np.array([1, 1, 2]), np.array([1, 0, 2]))
     first, *_ = fewest_kinds(machine).steps
     assert first.gear_of.tolist() == [1, 0, 2]
     assert [len(step.gears) for step in fewest_kinds(machine).steps] == [3, 2, 1]
 
 
 def test_an_axis_that_one_gear_suits_forces_it() -> None:
-    machine = Choices(
+    machine = GearChoices(
         np.array([[True, True], [False, True], [False, False]]),
         np.full((3, 2), 0.5),
         np.array([1.0, 2.0]),
@@ -84,7 +84,7 @@ def test_at_most_so_many_kinds_are_tried() -> None:
 
 
 def test_a_machine_that_no_gear_serves_has_no_kinds() -> None:
-    machine = Choices(
+    machine = GearChoices(
         np.zeros((2, 3), bool), np.zeros((2, 3)), np.ones(3), np.ones(2, np.int64), np.array([NO_GEAR] * 2)
     )
     assert fewest_kinds(machine).steps == ()
@@ -95,7 +95,7 @@ def test_without_time_a_set_is_there_but_not_proven() -> None:
     suits = draw.random((400, 40)) < 0.2
     suits[:, 39] = True
     own = suits.argmax(axis=1)
-    machine = Choices(suits, draw.random((400, 40)), draw.uniform(1, 9, 40), np.ones(400, np.int64), own)
+    machine = GearChoices(suits, draw.random((400, 40)), draw.uniform(1, 9, 40), np.ones(400, np.int64), own)
     kinds = fewest_kinds(machine, seconds=0)
     assert kinds.steps
     assert not any(step.is_proven for step in kinds.steps)

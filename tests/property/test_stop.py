@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.random import default_rng
 
 from hpn.physics.stop import (
-    Brake,
+    BrakeFigures,
     LoadTorques,
     Play,
     course_of_stop,
@@ -26,7 +26,7 @@ GEAR = Play(26_000.0, 5 / 10_800 * np.pi)
 """20A-5: table 15.2 and table 15.1."""
 
 brakes = st.builds(
-    Brake,
+    BrakeFigures,
     torque_Nm=st.floats(0.5, 50),
     ratio=st.sampled_from([3.0, 5.0, 25.0]),
     motor_inertia_kgm2=st.floats(1e-5, 1e-2),
@@ -42,13 +42,13 @@ loads = st.builds(
 factors = st.one_of(st.just(np.nan), st.floats(1, 10))
 
 
-def torque(brake: Brake, load: LoadTorques, f: float = np.nan) -> float:
+def torque(brake: BrakeFigures, load: LoadTorques, f: float = np.nan) -> float:
     return stop_torque(brake=brake, load=load, gear=GEAR, dynamic_factor=f).item()
 
 
 @given(brakes, loads)
 def test_the_torque_is_that_of_a_flank_let_go_a_gap_crossed_and_a_swing_about_the_other(
-    brake: Brake, load: LoadTorques
+    brake: BrakeFigures, load: LoadTorques
 ) -> None:
     """Work on the spring, times 2 K3: of T_r along the one flank and the gap, and what T_o had stored in the flank."""
     T_k, T_r = torque(brake, load), settled_torque(brake=brake, load=load).item()
@@ -62,7 +62,9 @@ def test_the_torque_is_that_of_a_flank_let_go_a_gap_crossed_and_a_swing_about_th
 
 
 @given(brakes, loads, factors)
-def test_a_harder_brake_and_a_heavier_pull_never_lower_the_torque(brake: Brake, load: LoadTorques, f: float) -> None:
+def test_a_harder_brake_and_a_heavier_pull_never_lower_the_torque(
+    brake: BrakeFigures, load: LoadTorques, f: float
+) -> None:
     T_k = torque(brake, load, f)
     harder = replace(brake, torque_Nm=float(brake.torque_Nm) * 1.1)
     pulled = LoadTorques(float(load.pulling_Nm) * 1.1, load.driving_Nm, float(load.opposing_Nm) * 1.1)
@@ -72,7 +74,7 @@ def test_a_harder_brake_and_a_heavier_pull_never_lower_the_torque(brake: Brake, 
 
 @given(brakes, loads, factors, st.floats(5, 500))
 def test_the_largest_brake_torque_has_its_stop_at_the_limit_or_there_is_none(
-    brake: Brake, load: LoadTorques, f: float, limit_Nm: float
+    brake: BrakeFigures, load: LoadTorques, f: float, limit_Nm: float
 ) -> None:
     for known in (brake, replace(brake, motor_inertia_kgm2=np.nan)):
         largest = largest_brake_torque(
@@ -89,7 +91,7 @@ def test_the_largest_brake_torque_has_its_stop_at_the_limit_or_there_is_none(
 
 @given(brakes, loads, factors, st.floats(5, 500))
 def test_the_largest_inertia_is_where_bisection_finds_it(
-    brake: Brake, load: LoadTorques, f: float, limit_Nm: float
+    brake: BrakeFigures, load: LoadTorques, f: float, limit_Nm: float
 ) -> None:
     found = largest_load_inertia(
         brake=brake, load=load, gear=GEAR, dynamic_factor=f, permissible_torque_Nm=limit_Nm
@@ -121,13 +123,15 @@ def test_the_torque_rises_with_the_inertia_of_the_load_where_the_brake_holds_it(
     for _ in range(200):
         i_T_B, T_d, more, eta = draws.uniform((5, 0, 0, 0.5), (200, 1, 50, 1)).tolist()
         load = LoadTorques(i_T_B * T_d, 0.0, i_T_B * T_d + more)
-        torques = [torque(Brake(i_T_B / 5, 5, 0.0015, J, eta), load) for J in np.geomspace(1e-4, 1e3, 20).tolist()]
+        torques = [
+            torque(BrakeFigures(i_T_B / 5, 5, 0.0015, J, eta), load) for J in np.geomspace(1e-4, 1e3, 20).tolist()
+        ]
         assert all(after >= before * (1 - 1e-12) for before, after in pairwise(torques))
 
 
 def test_without_an_inertia_the_whole_torque_of_the_brake_counts_or_what_pulls() -> None:
     """i T_B / η = 50 and 110 Nm against 80 Nm that pull."""
-    brake = Brake(8, np.array([5.0, 11.0]), np.nan, 0.8, 0.8)
+    brake = BrakeFigures(8, np.array([5.0, 11.0]), np.nan, 0.8, 0.8)
     settled = settled_torque(brake=brake, load=LoadTorques(80.0, 80.0, 80.0))
     assert settled.tolist() == pytest.approx([80.0, 110.0])
     course = course_of_stop(
@@ -143,7 +147,7 @@ def test_without_an_inertia_the_whole_torque_of_the_brake_counts_or_what_pulls()
 
 
 def test_a_load_that_the_brake_does_not_stop_has_neither_time_nor_angle() -> None:
-    brake, load = Brake(8, 5, 0.0015, 0.8), LoadTorques(50.0, 40.0, 50.0)
+    brake, load = BrakeFigures(8, 5, 0.0015, 0.8), LoadTorques(50.0, 40.0, 50.0)
     course = course_of_stop(
         brake=brake,
         load=load,

@@ -73,7 +73,7 @@ def typed_export_of(
         application=asked,
         selection=select(asked, catalogue, to_link),
         link="http://hpn.example/selections/0123456789abcdefghijkl",
-        heading=export.Heading(title, reference),
+        heading=export.ExportTitle(title, reference),
         created=CREATED,
         catalogue=catalogue,
     )
@@ -108,7 +108,7 @@ class Export:
             application=self.application,
             selection=msgspec.convert(self.reply, Selection),
             link="http://hpn.example/selections/0123456789abcdefghijkl",
-            heading=export.Heading(self.title, self.reference),
+            heading=export.ExportTitle(self.title, self.reference),
             created=CREATED,
             catalogue=self.catalogue,
         )

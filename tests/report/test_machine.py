@@ -15,7 +15,7 @@ from hpn.documents.revision import Frozen
 from hpn.documents.summary import gear_of, order_of, summary_of
 from hpn.engine.checks import name_of
 from hpn.engine.selection import select
-from hpn.files.export import Heading
+from hpn.files.export import ExportTitle
 from hpn.files.machine import changes_pdf, changes_workbook
 from hpn.files.machine.axis_page import axis_page
 from hpn.files.machine.changes import DifferencesExport
@@ -38,7 +38,7 @@ TITLE = "Packing line VP-40"
 
 
 def export_of(document: Frozen, catalogue: Catalogue, before: Frozen | None = None) -> MachineExport:
-    heading = Heading(TITLE, "HB-2431", "MA", "B")
+    heading = ExportTitle(TITLE, "HB-2431", "MA", "B")
     return MachineExport(document, catalogue, LINK, heading, CREATED, None, ("A", before) if before else None)
 
 
@@ -297,7 +297,7 @@ def changed(line: Frozen) -> DifferencesExport:
     del axes[39]
     common = COMMON | {"requirements": {"utilisation": 0.9, "life_h": 15000.0}}
     documents = (frozen(axes, catalogue, common, title=TITLE), line)
-    return DifferencesExport(("A", "B"), documents, (catalogue, catalogue), LINK, Heading(TITLE), CREATED)
+    return DifferencesExport(("A", "B"), documents, (catalogue, catalogue), LINK, ExportTitle(TITLE), CREATED)
 
 
 def test_the_workbook_of_differences_has_every_input_and_figure(changed: DifferencesExport) -> None:

@@ -15,7 +15,7 @@ from pypdf import PdfReader
 
 from hpn.account.readings import readings_of
 from hpn.catalogue import Catalogue, load_catalogue
-from hpn.files.export import DIGITS, Heading
+from hpn.files.export import DIGITS, ExportTitle
 from hpn.files.report.pdf import pdf
 from hpn.files.report.verdict import verdict
 from hpn.words.reader import Reader
@@ -193,7 +193,7 @@ def test_a_brake_that_does_not_stop_the_load_is_why_no_gear_is_suitable(catalogu
 
 
 def test_the_title_block_says_who_answers_for_what(catalogue: Catalogue) -> None:
-    heading = Heading("Axis 7", "PLM-4711", "A. Müller", "B", "HPN-20A-5-J6-BH-AF1")
+    heading = ExportTitle("Axis 7", "PLM-4711", "A. Müller", "B", "HPN-20A-5-J6-BH-AF1")
     export = replace(typed_export_of(CASES["example"], catalogue), heading=heading)
     found = text(pdf(export, ENGLISH), pages=1)
     for words in ("Axis 7", "PLM-4711", "A. Müller", "Revision\nB", "HPN-20A-5-J6-BH-AF1", "Saved\n21 November 2026"):
@@ -204,7 +204,7 @@ def test_the_title_block_says_who_answers_for_what(catalogue: Catalogue) -> None
 
 @pytest.mark.parametrize("reader", [ENGLISH, GERMAN])
 def test_the_worked_example_takes_three_pages_with_their_heads(reader: Reader, catalogue: Catalogue) -> None:
-    heading = Heading("Infeed turret", "HB-2417", "MA", "C")
+    heading = ExportTitle("Infeed turret", "HB-2417", "MA", "C")
     document = pdf(replace(typed_export_of(CASES["example"], catalogue), heading=heading), reader)
     pages = page_texts(document, 9)
     assert len(pages) == 3

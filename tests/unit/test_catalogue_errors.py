@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hpn.catalogue import CatalogueError, load_catalogue
-from hpn.catalogue.tables import TABLES, Table
+from hpn.catalogue.tables import TABLES, CatalogueRow
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.conftest import Supplement
@@ -240,7 +240,7 @@ def test_a_missing_row_of_a_rated_size_is_named(folder: Path, name: str, key: st
 
 
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.file)
-def test_every_missing_file_is_named(folder: Path, table: type[Table]) -> None:
+def test_every_missing_file_is_named(folder: Path, table: type[CatalogueRow]) -> None:
     path = folder / table.file
     path.unlink()
 

@@ -10,7 +10,7 @@ from hpn.application import Application
 from hpn.application.input_fields import FIELDS
 from hpn.catalogue import Catalogue
 from hpn.documents import revision
-from hpn.documents.answers import Asked, AxisAnswer, answers
+from hpn.documents.answers import AxisAnswer, AxisQuestion, answers
 from hpn.documents.answers import answer_of as selection_answer
 from hpn.documents.axis import MOST_AXES, MOST_PHASES, Axis, phases_of
 from hpn.documents.common import COMMON, OWN, OWN_PARTS, Common
@@ -22,7 +22,7 @@ from tests.build import Json, cycle, phase, worked_example
 
 def answer_of(own: Json, common: Json, catalogue: Catalogue, code: str | None = None, **rest: Any) -> AxisAnswer:
     """Answer to one axis."""
-    (answer,) = answers([Asked(resolve(own, common, **rest), code)], catalogue)
+    (answer,) = answers([AxisQuestion(resolve(own, common, **rest), code)], catalogue)
     return answer
 
 

@@ -6,7 +6,7 @@ import random
 import pytest
 
 from hpn.account.account import Account
-from hpn.account.readings import Reading, readings_of
+from hpn.account.readings import CheckReading, readings_of
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
@@ -18,7 +18,7 @@ from tests.reference.test_motion import CONTRACT
 LIGHT_STOPS = worked_example(emergency_stop={"torque_Nm": 5, "count": 10}, requirements={"utilisation": 0.93})
 
 
-def readings(application: Json, designation: str, catalogue: Catalogue) -> dict[str, Reading]:
+def readings(application: Json, designation: str, catalogue: Catalogue) -> dict[str, CheckReading]:
     """Readings of a gear's checks."""
     asked = Application.model_validate(application)
     selection = select(asked, catalogue)

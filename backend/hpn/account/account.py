@@ -8,11 +8,11 @@ import numpy as np
 
 from hpn.account import published
 from hpn.account.inputs import LOADS, REQUIREMENTS, lines_of, mechanism_of, moves_of, phases_of
-from hpn.account.lines import Kind, Line, Table
+from hpn.account.lines import Kind, Line, LineTable
 from hpn.account.readings import (
     AT_MOTOR,
+    CheckReading,
     Life,
-    Reading,
     TorqueLimit,
     adds_at_motor,
     figure_symbol,
@@ -48,7 +48,7 @@ class CheckLine:
     code: str
     result: CheckResult
     definition: CheckDefinition
-    reading: Reading
+    reading: CheckReading
     bound: float
     source: str
     governs: bool
@@ -111,13 +111,13 @@ class Account:
         return mechanism_of(motion) if motion else []
 
     @cached_property
-    def moves(self) -> Table | None:
+    def moves(self) -> LineTable | None:
         """Moves of a motion; None where phases were given."""
         motion = self.application.duty_cycle.motion if self.application else None
         return moves_of(motion) if motion else None
 
     @cached_property
-    def phases(self) -> Table | None:
+    def phases(self) -> LineTable | None:
         """Load phases; None where the application is not known."""
         return phases_of(self.application.duty_cycle) if self.application else None
 

@@ -4,7 +4,7 @@ import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from hpn.account.lines import Column, Kind, Line, Table, Value
+from hpn.account.lines import Kind, Line, LineTable, QuantityColumn, Value
 from hpn.application import Application, DutyCycle
 from hpn.application.motion import Motion
 from hpn.words.motion import MOTION
@@ -82,17 +82,17 @@ def mechanism_of(motion: Motion) -> list[Line]:
     return lines
 
 
-def moves_of(motion: Motion) -> Table:
+def moves_of(motion: Motion) -> LineTable:
     """The moves; a field that is at its default is left out, and a column that no move sets."""
     columns = []
     for place, named in MOVES.items():
         name = place.rpartition(".")[2]
         given = [getattr(move, name) if _is_said(move, name) else None for move in motion.moves]
         if any(value is not None for value in given):
-            columns.append(Column(_line(place, named), given))
+            columns.append(QuantityColumn(_line(place, named), given))
     names = [move.name for move in motion.moves]
-    named_moves = Column(_line("motion.move.name", MOTION["move.name"]), names)
-    return Table({MOVE_HEAD: [*map(row_label, itertools.count(), names)]}, tuple(columns), named_moves)
+    named_moves = QuantityColumn(_line("motion.move.name", MOTION["move.name"]), names)
+    return LineTable({MOVE_HEAD: [*map(row_label, itertools.count(), names)]}, tuple(columns), named_moves)
 
 
 def _is_said(owner: Any, name: str) -> bool:
@@ -106,20 +106,20 @@ _ALWAYS = ("torque_Nm", "speed_rpm", "duration_s")
 _WHERE_GIVEN = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "least_torque_Nm", "radial_N", "axial_N")
 
 
-def phases_of(cycle: DutyCycle) -> Table:
+def phases_of(cycle: DutyCycle) -> LineTable:
     """The load phases, as they were given or rounded where they come out of a motion; always torque, speed, time."""
     phases = cycle.load_phases
     kind: Kind = "entered" if cycle.motion is None else "computed"
     optional = [name for name in _WHERE_GIVEN if any(getattr(phase, name) is not None for phase in phases)]
-    return Table(
+    return LineTable(
         _labels(cycle),
         tuple(
-            Column(
+            QuantityColumn(
                 _line(f"phase.{name}", INPUTS[f"phase.{name}"], kind=kind), [getattr(phase, name) for phase in phases]
             )
             for name in (*_ALWAYS, *optional)
         ),
-        Column(_line("phase.name", INPUTS["phase.name"]), [phase.name for phase in phases]),
+        QuantityColumn(_line("phase.name", INPUTS["phase.name"]), [phase.name for phase in phases]),
     )
 
 

@@ -105,7 +105,7 @@ def known(lines: Iterable[Line]) -> list[Line]:
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class QuantityColumn:
     """One quantity of the rows of a table; None where a row says nothing of it."""
 
     head: Line
@@ -117,21 +117,21 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class LineTable:
     """Rows of one kind, such as phases: columns of labels by their heads (msgids), and columns of values."""
 
     labels: Mapping[str, Sequence[str]]
-    columns: tuple[Column, ...]
-    names: Column
+    columns: tuple[QuantityColumn, ...]
+    names: QuantityColumn
 
     def __len__(self) -> int:
         return len(self.names.values)
 
-    def first(self, count: int) -> "Table":
+    def first(self, count: int) -> "LineTable":
         """The first rows."""
         columns = tuple(replace(column, values=column.values[:count]) for column in self.columns)
         labels = {head: texts[:count] for head, texts in self.labels.items()}
-        return Table(labels, columns, replace(self.names, values=self.names.values[:count]))
+        return LineTable(labels, columns, replace(self.names, values=self.names.values[:count]))
 
     def row(self, place: int) -> list[Line]:
         """Texts of one row, its name first."""

@@ -28,7 +28,7 @@ OTHERWISE = {"≤": ">", "≥": "<"}
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class CheckReading:
     """Demand and limit in `unit`, a suffix or symbol; None where there is none, or where nothing limits the demand.
 
     `part` is the share of the limit that the user's own u leaves: the limit times it, for a minimum over it.
@@ -138,12 +138,12 @@ def readings_of(
     selection: Selection,
     application: Application | None,
     catalogue: Catalogue | None,
-) -> dict[str, Reading]:
+) -> dict[str, CheckReading]:
     """Readings of a candidate's checks by code; as they were computed where application or catalogue is not known."""
     load = application.loads if application else None
     gear = catalogue.by_designation.get(candidate.designation) if catalogue else None
     u = application.requirements.utilisation if application else 1.0
-    readings: dict[str, Reading] = {}
+    readings: dict[str, CheckReading] = {}
     for check in candidate.checks:
         reading = None
         if check.code == "output_bearing_life" and load and candidate.says(f"bearing_life_{load.life_basis}_h"):
@@ -154,13 +154,13 @@ def readings_of(
     return readings
 
 
-def _as_computed(check: CheckResult, selection: Selection, gear: Gear | None, u: float) -> Reading:
+def _as_computed(check: CheckResult, selection: Selection, gear: Gear | None, u: float) -> CheckReading:
     known, definition = BY_CODE.get(check.code), selection.check_definitions[check.code]
     part = known.allowed(u) if known else 1.0
     relation = relation_of(check.code, adds_at_motor=adds_at_motor(selection, gear))
     larger = check.demand if definition.kind == "minimum" else check.limit
     unlimited = larger is None and check.utilisation is not None
-    return Reading(
+    return CheckReading(
         check.demand, check.limit, definition.unit, definition.kind, definition.limit_name, relation, part, unlimited
     )
 
@@ -168,18 +168,18 @@ def _as_computed(check: CheckResult, selection: Selection, gear: Gear | None, u:
 _REQUIRED = {"L50": N_("L50 required"), "L10": N_("L10 required")}
 
 
-def _bearing_life(candidate: Candidate, check: CheckResult, load: OutputLoad, u: float) -> Reading:
+def _bearing_life(candidate: Candidate, check: CheckResult, load: OutputLoad, u: float) -> CheckReading:
     """Life on the basis of the required one. A load that may be u times as large leaves a life of L / u³."""
     basis = load.life_basis
     life = candidate.bearing_life_L50_h if basis == "L50" else candidate.bearing_life_L10_h
     relation = f"L_b,{basis[1:]} ≥ L_b"
     unlimited = life is None and check.utilisation is not None
-    return Reading(life, load.life_h, "h", "minimum", _REQUIRED[basis], relation, u**3, unlimited)
+    return CheckReading(life, load.life_h, "h", "minimum", _REQUIRED[basis], relation, u**3, unlimited)
 
 
 def _bearing_load(
     check: CheckResult, application: Application, load: OutputLoad, catalogue: Catalogue, gear: Gear, u: float
-) -> Reading | None:
+) -> CheckReading | None:
     """Load vector of the worst phase times f_w, and how long it may be in its own direction; None without a load."""
     if not check.demand:
         return None
@@ -189,7 +189,7 @@ def _bearing_load(
     radial, axial = duty.phases.radial_N[0, 0, worst], duty.phases.axial_N[0, 0, worst]
     demand = load.load_coefficient * float(np.hypot(radial, axial))
     name = N_("maximum in this direction")
-    return Reading(demand, demand / check.demand, "N", "maximum", name, "f_w · F ≤ F_max", u)
+    return CheckReading(demand, demand / check.demand, "N", "maximum", name, "f_w · F ≤ F_max", u)
 
 
 LIMIT, WITHIN = (

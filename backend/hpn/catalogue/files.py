@@ -12,7 +12,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from hpn.catalogue.tables import CatalogueError, Cell, Cells, Table, TableRow
+from hpn.catalogue.tables import CatalogueError, CatalogueRow, Cell, Cells, TableRow
 from hpn.tables.cells import split_unit
 from hpn.tables.numbers import unit_code
 from hpn.words.designations import canonical_size
@@ -88,7 +88,7 @@ def _content(path: Path) -> bytes:
 Key = tuple[str, ...]
 
 
-def read(path: Path, content: bytes, table: type[Table], *, supplied: bool) -> dict[Key, Cells]:
+def read(path: Path, content: bytes, table: type[CatalogueRow], *, supplied: bool) -> dict[Key, Cells]:
     """Cells of one CSV file by key.
 
     Raises CatalogueError for what is no text, a wrong header, no row or too many, a row of the wrong length, a blank or
@@ -165,7 +165,9 @@ def _place(before: str) -> tuple[int, str | None]:
     return len(lines), header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
 
 
-def _lines(path: Path, text: str, table: type[Table], may_lack: frozenset[str]) -> Iterator[tuple[int, dict[str, str]]]:
+def _lines(
+    path: Path, text: str, table: type[CatalogueRow], may_lack: frozenset[str]
+) -> Iterator[tuple[int, dict[str, str]]]:
     """Line and cells of every row by column; a column that the file may lack is blank.
 
     Raises CatalogueError for a header that is not the table's and for a row that does not fit it.

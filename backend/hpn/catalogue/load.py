@@ -14,6 +14,7 @@ from hpn.catalogue.gear import ClampBolt, Gear, HousingBolts
 from hpn.catalogue.tables import (
     AccuracyTable,
     CatalogueError,
+    CatalogueRow,
     Cells,
     ClampBoltTable,
     EfficiencyTable,
@@ -29,7 +30,6 @@ from hpn.catalogue.tables import (
     SizeTable,
     SourceTable,
     StiffnessTable,
-    Table,
     TableRow,
     VersionTable,
     WeightTable,
@@ -104,7 +104,7 @@ def load_catalogue(
     )
 
 
-def _rows(table: type[Table], parts: Sequence[tuple[Path, dict[str, bytes]]]) -> dict[files.Key, Cells]:
+def _rows(table: type[CatalogueRow], parts: Sequence[tuple[Path, dict[str, bytes]]]) -> dict[files.Key, Cells]:
     """Rows of the catalogue's folder, and those of the supplement over them where it has this table."""
     (folder, contents), *supplements = parts
     if table.file not in contents:
@@ -127,13 +127,13 @@ def _version(parts: Iterable[dict[str, bytes]]) -> str:
     return digest.hexdigest()[:16]
 
 
-class _Book(dict[type[Table], list[Table]]):
+class _Book(dict[type[CatalogueRow], list[CatalogueRow]]):
     """Validated rows by table."""
 
     def __init__(self) -> None:
-        self._by_key: dict[tuple[object, ...], Table] = {}
+        self._by_key: dict[tuple[object, ...], CatalogueRow] = {}
 
-    def __setitem__(self, table: type[Table], rows: list[Table]) -> None:
+    def __setitem__(self, table: type[CatalogueRow], rows: list[CatalogueRow]) -> None:
         super().__setitem__(table, rows)
         self._by_key |= {(table, *(getattr(row, name) for name in table.key)): row for row in rows}
 
@@ -145,7 +145,7 @@ class _Book(dict[type[Table], list[Table]]):
         """Row with this key, or None."""
         return cast(TableRow | None, self._by_key.get((table, *key)))
 
-    def source(self, row: Table, column: str) -> str:
+    def source(self, row: CatalogueRow, column: str) -> str:
         """Where one figure comes from; what the user supplied says so."""
         cell = row.cells[column]
         if cell.supplied:
@@ -215,7 +215,7 @@ def _check_complete(book: _Book) -> None:
     for gear in book.of(GearTable):
         if gear.size not in rated:
             continue
-        rows: dict[type[Table], Table | None] = {
+        rows: dict[type[CatalogueRow], CatalogueRow | None] = {
             RatingTable: book.find(RatingTable, gear.size, gear.ratio),
             SizeTable: book.find(SizeTable, gear.size),
             WeightTable: book.find(WeightTable, gear.size, gear.stages),
@@ -251,7 +251,7 @@ def _series(book: _Book) -> dict[str, SeriesFigure]:
 def _gears(book: _Book) -> tuple[Gear, ...]:
     gears = []
     for row in sorted(book.of(GearTable), key=lambda row: (int(row.size[:-1]), row.ratio)):
-        parts: list[Table | None] = [
+        parts: list[CatalogueRow | None] = [
             row,
             book.find(RatingTable, row.size, row.ratio),
             book.find(SizeTable, row.size),

@@ -57,7 +57,7 @@ Count = Annotated[int, BeforeValidator(_plain_number), Field(gt=0, le=10_000)]
 Size = Annotated[str, BeforeValidator(canonical_size), Field(pattern=r"^\d{1,3}A$")]
 
 
-class Table(BaseModel):
+class CatalogueRow(BaseModel):
     """One row of one CSV file. A blank cell is None: not published."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -81,10 +81,10 @@ class Table(BaseModel):
         return CatalogueError(cell.file, cell.line, column, detail)
 
 
-TableRow = TypeVar("TableRow", bound=Table)
+TableRow = TypeVar("TableRow", bound=CatalogueRow)
 
 
-class SourceTable(Table):
+class SourceTable(CatalogueRow):
     file = "sources.csv"
     key = ("source",)
     document: str
@@ -92,7 +92,7 @@ class SourceTable(Table):
     title: str
 
 
-class RatioRow(Table):
+class RatioRow(CatalogueRow):
     """Row of a table of figures that each gear has of its own."""
 
     key = ("size", "ratio")
@@ -106,7 +106,7 @@ class GearRow(RatioRow):
     stages: Count
 
 
-class SizeRow(Table):
+class SizeRow(CatalogueRow):
     """Row of a table of figures that all gears of a size share."""
 
     key = ("size",)
@@ -114,7 +114,7 @@ class SizeRow(Table):
     note: str | None = None
 
 
-class StageRow(Table):
+class StageRow(CatalogueRow):
     """Row of a table of figures that all gears of a size and number of stages share."""
 
     key = ("size", "stages")
@@ -144,14 +144,14 @@ AccuracyTable = _with_figures("accuracy.csv", StageRow)
 StiffnessTable = _with_figures("stiffness.csv", StageRow)
 
 
-class FlangeBoltTable(Table):
+class FlangeBoltTable(CatalogueRow):
     file = "flange_bolts.csv"
     key = ("bolt_size",)
     bolt_size: str
     tightening_torque_Nm: Positive | None = None
 
 
-class ClampBoltTable(Table):
+class ClampBoltTable(CatalogueRow):
     file = "clamp_bolts.csv"
     key = ("size", "bolt_size")
     size: Size
@@ -159,7 +159,7 @@ class ClampBoltTable(Table):
     tightening_torque_Nm: Positive | None = None
 
 
-class HousingBoltTable(Table):
+class HousingBoltTable(CatalogueRow):
     file = "housing_bolts.csv"
     key = ("size",)
     size: Size
@@ -169,7 +169,7 @@ class HousingBoltTable(Table):
     tightening_torque_Nm: Positive | None = None
 
 
-class VersionTable(Table):
+class VersionTable(CatalogueRow):
     file = "versions.csv"
     key = ("position", "code")
     position: str
@@ -177,7 +177,7 @@ class VersionTable(Table):
     description: str
 
 
-class FactTable(Table):
+class FactTable(CatalogueRow):
     file = "facts.csv"
     key = ("name",)
     name: str
@@ -186,7 +186,7 @@ class FactTable(Table):
     check: CheckCode | None = None
 
 
-class SeriesTable(Table):
+class SeriesTable(CatalogueRow):
     file = "series.csv"
     key = ("name",)
     name: str
@@ -194,7 +194,7 @@ class SeriesTable(Table):
     unit: Annotated[str, Field(pattern="^(" + "|".join(SYMBOLS) + ")$")] | None = None
 
 
-class EnvelopeTable(Table):
+class EnvelopeTable(CatalogueRow):
     """Point of a printed bearing graph (16.1 to 16.5); the handbook's text has none."""
 
     file = "bearing_envelopes.csv"
@@ -207,7 +207,7 @@ class EnvelopeTable(Table):
     radial_N: Annotated[Figure, Field(ge=0, le=1e12)]
 
 
-class EfficiencyTable(Table):
+class EfficiencyTable(CatalogueRow):
     """Point of a printed efficiency curve (19.1 to 23.9); the handbook's text has none."""
 
     file = "efficiency.csv"
@@ -220,7 +220,7 @@ class EfficiencyTable(Table):
     efficiency: Annotated[Figure, Field(gt=0, le=1)]
 
 
-class MotorTable(Table):
+class MotorTable(CatalogueRow):
     """A motor of the user; the handbook has none."""
 
     file = "motors.csv"
@@ -235,7 +235,7 @@ class MotorTable(Table):
     inertia_kgm2: Positive | None = None
 
 
-TABLES: tuple[type[Table], ...] = (
+TABLES: tuple[type[CatalogueRow], ...] = (
     SourceTable,
     GearTable,
     RatingTable,

@@ -64,7 +64,7 @@ class AxisFault(Reply, frozen=True):
         return tuple(int(part) if part.isdecimal() and len(part) < 10 else part for part in parts)
 
 
-class Asked(NamedTuple):
+class AxisQuestion(NamedTuple):
     """Resolved application of an axis, and the ordering code of the gear that it is to have, if any."""
 
     resolved: Resolved
@@ -109,7 +109,7 @@ class AxisAnswer(Reply, frozen=True):
     catalogue_version: Annotated[str, Field(description="Catalogue that was asked.")] = ""
 
 
-def answers(axes: Sequence[Asked], catalogue: Catalogue) -> list[AxisAnswer]:
+def answers(axes: Sequence[AxisQuestion], catalogue: Catalogue) -> list[AxisAnswer]:
     """Answers to axes, all of them judged together; an axis whose application has a fault is open."""
     # Copies, so that axes with one application have a code each.
     applications = [each and each.model_copy() for each in (asked.resolved.application for asked in axes)]

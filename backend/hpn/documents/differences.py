@@ -14,7 +14,7 @@ from pydantic import Field
 
 from hpn.application.faults import pointer
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import Asked, AxisAnswer, AxisStatus, answers
+from hpn.documents.answers import AxisAnswer, AxisQuestion, AxisStatus, answers
 from hpn.documents.merge import resolve
 from hpn.documents.revision import Frozen, FrozenAxis
 from hpn.documents.summary import Summary, gear_of, summary_of
@@ -129,7 +129,7 @@ def differences(
 
 def today(document: Frozen, catalogue: Catalogue) -> Frozen:
     """A document answered again by this engine and a catalogue; its inputs stay as they were resolved."""
-    asked = [Asked(resolve(_json(axis.resolved), {}), axis.ordering_code) for axis in document.axes]
+    asked = [AxisQuestion(resolve(_json(axis.resolved), {}), axis.ordering_code) for axis in document.axes]
     axes = [
         structs.replace(axis, answer=structs.replace(answer, not_asked=axis.answer.not_asked))
         for axis, answer in zip(document.axes, answers(asked, catalogue), strict=True)

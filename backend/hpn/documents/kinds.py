@@ -10,7 +10,7 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.evaluation import SUITABLE, BoolArray
-from hpn.engine.kinds import NO_GEAR, Choices, LightestSet, fewest_kinds
+from hpn.engine.kinds import NO_GEAR, GearChoices, LightestSet, fewest_kinds
 from hpn.engine.selection import Judged
 from hpn.physics.equations import FloatArray
 from hpn.words.reply import Reply
@@ -65,7 +65,7 @@ def kinds_of(sought: Sequence[Sought], catalogue: Catalogue, *, most: int | None
     names = [gear.designation for gear in catalogue.gears]
     place = {name: index for index, name in enumerate(names)}
     suits, used = _judged([axis.application for axis in sought], catalogue)
-    axes = Choices(
+    axes = GearChoices(
         suits,
         used,
         np.array([np.nan if gear.weight_kg is None else gear.weight_kg for gear in catalogue.gears]),
@@ -99,7 +99,7 @@ def _judged(applications: Sequence[Application], catalogue: Catalogue) -> tuple[
     return suits, used
 
 
-def _step(step: LightestSet, axes: Choices, names: Sequence[str], numbers: Sequence[int]) -> KindsStep:
+def _step(step: LightestSet, axes: GearChoices, names: Sequence[str], numbers: Sequence[int]) -> KindsStep:
     changed = np.flatnonzero((step.gear_of != axes.present) & (step.gear_of != NO_GEAR))
     return KindsStep(
         count=len(step.gears),
@@ -110,7 +110,7 @@ def _step(step: LightestSet, axes: Choices, names: Sequence[str], numbers: Seque
     )
 
 
-def _change(axes: Choices, axis: int, to: int, names: Sequence[str], number: int) -> GearChange:
+def _change(axes: GearChoices, axis: int, to: int, names: Sequence[str], number: int) -> GearChange:
     before = int(axes.present[axis])
     gained = float((axes.weight_kg[to] - axes.weight_kg[before]) * axes.quantity[axis])
     known = before != NO_GEAR and bool(np.isfinite(gained))

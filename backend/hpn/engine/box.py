@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hpn.application import Application
 from hpn.application.tolerances import Interval, Place
-from hpn.engine.duty import Asked, Duty, Phases, least_torque
+from hpn.engine.duty import Duty, InputArrays, Phases, least_torque
 from hpn.physics.equations import FloatArray
 
 IntArray = NDArray[np.intp]
@@ -24,7 +24,7 @@ CYCLE_LOADS = ("output_load.radial_N", "output_load.axial_N")
 
 WITH_TORQUE = ("torque_Nm", "peak_torque_Nm", "rms_torque_Nm", "least_torque_Nm")
 SERIES = (*Phases.__dataclass_fields__,)
-TEXTS = tuple(name for name in Asked.__dataclass_fields__ if name not in ("numbers", "shaft_centres_mm"))
+TEXTS = tuple(name for name in InputArrays.__dataclass_fields__ if name not in ("numbers", "shaft_centres_mm"))
 
 
 class Ends(NamedTuple):
@@ -35,7 +35,7 @@ class Ends(NamedTuple):
     at_high: FloatArray
 
 
-class Column(NamedTuple):
+class PhaseIntervals(NamedTuple):
     """Intervals of one field of the phases, and the phases that each moves; one of a whole cycle moves several."""
 
     of: IntArray
@@ -66,13 +66,13 @@ class Box:
         return np.array([one.high for one in self.intervals])
 
     @cached_property
-    def columns(self) -> Mapping[str, Column]:
+    def columns(self) -> Mapping[str, PhaseIntervals]:
         """Intervals of phases by field; in each phase its own before that of the whole cycle."""
         found: dict[str, list[tuple[int, int]]] = {}
         for place, one in enumerate(self.intervals):
             for phase in self._phases_of(one):
                 found.setdefault(str(one.place[-1]), []).append((place, phase))
-        return {name: Column(*np.array(pairs, np.intp).T) for name, pairs in found.items()}
+        return {name: PhaseIntervals(*np.array(pairs, np.intp).T) for name, pairs in found.items()}
 
     def _phases_of(self, one: Interval) -> Sequence[int]:
         """Phases whose field an interval moves; none for another number."""
@@ -117,7 +117,7 @@ class Box:
             series["least_torque_Nm"] = np.where(self._given["least_torque_Nm"], series["least_torque_Nm"], by_default)
         return Duty(Phases(**series), self._asked_at(points), *self._motions(count))
 
-    def _move_torques(self, series: Mapping[str, FloatArray], points: FloatArray, column: Column) -> None:
+    def _move_torques(self, series: Mapping[str, FloatArray], points: FloatArray, column: PhaseIntervals) -> None:
         """Set torques, and peaks, RMS and least torques that go with them by one factor, or by what is added at 0."""
         of, phases = column
         x, value = points[:, of], self.value[of]
@@ -129,7 +129,7 @@ class Box:
             moved = np.where(reaches, grown, own * factor)
             series[name][:, 0, phases] = np.where(given, moved, np.abs(x))
 
-    def _move_speeds(self, series: Mapping[str, FloatArray], points: FloatArray, column: Column) -> None:
+    def _move_speeds(self, series: Mapping[str, FloatArray], points: FloatArray, column: PhaseIntervals) -> None:
         """Set speeds, and peaks that go with them by one factor."""
         of, phases = column
         x = points[:, of]
@@ -138,7 +138,7 @@ class Box:
         series["speed_rpm"][:, 0, phases] = np.abs(x)
         series["peak_speed_rpm"][:, 0, phases] = np.where(given, peak, np.abs(x))
 
-    def _asked_at(self, points: FloatArray) -> Asked:
+    def _asked_at(self, points: FloatArray) -> InputArrays:
         asked, count = self.duty.asked, len(points)
         numbers = dict(zip(asked.numbers, np.repeat(self._table, count, axis=1), strict=True))
         numbers |= {path: points[:, place, None] for path, place in self.numbers.items()}
@@ -146,7 +146,7 @@ class Box:
         numbers["requirements.utilisation"] = np.where(np.isnan(allowed), u, allowed)
         by_size = {size: np.repeat(values, count, axis=0) for size, values in asked.shaft_centres_mm.items()}
         texts = {name: np.repeat(getattr(asked, name), count, axis=0) for name in TEXTS}
-        return Asked(numbers, **texts, shaft_centres_mm=by_size)
+        return InputArrays(numbers, **texts, shaft_centres_mm=by_size)
 
     @cached_property
     def _table(self) -> FloatArray:
@@ -247,7 +247,7 @@ def _joined(duties: Sequence[Duty]) -> Duty:
     stopped = {
         start + row: one for start, duty in zip(starts, duties, strict=True) for row, one in duty.stopped_loads.items()
     }
-    return Duty(phases, Asked(numbers, **texts, shaft_centres_mm=by_size), courses, stopped)
+    return Duty(phases, InputArrays(numbers, **texts, shaft_centres_mm=by_size), courses, stopped)
 
 
 def moved(application: Application, values: Mapping[Place, float]) -> Application:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hpn.catalogue import GearColumns
-from hpn.engine.duty import Asked, Duty
+from hpn.engine.duty import Duty, InputArrays
 from hpn.engine.figures import Figures
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
@@ -34,7 +34,7 @@ class Case:
     figures: Figures
 
     @property
-    def asked(self) -> Asked:
+    def asked(self) -> InputArrays:
         """Inputs besides the phases."""
         return self.duty.asked
 

@@ -86,7 +86,7 @@ def _rows(application: Application) -> list[tuple[float, ...]]:
 
 
 @dataclass(frozen=True)
-class Asked:
+class InputArrays:
     """Inputs of N applications besides their phases, each array of shape (N, 1).
 
     `numbers` holds every single number of the application model by its path with dots, such as `requirements.life_h`;
@@ -105,7 +105,7 @@ class Asked:
     shaft_centres_mm: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, applications: Sequence[Application]) -> "Asked":
+    def of(cls, applications: Sequence[Application]) -> "InputArrays":
         """Inputs of applications, in their order."""
         table = np.array([_numbers(application) for application in applications], dtype=np.float64)
         loads = [application.loads for application in applications]
@@ -171,7 +171,7 @@ class Duty:
     """
 
     typed: Phases
-    asked: Asked
+    asked: InputArrays
     courses: Mapping[int, Course] = field(default_factory=dict)
     stopped_loads: Mapping[int, StoppedLoad] = field(default_factory=dict)
 
@@ -359,7 +359,7 @@ class Duty:
         braked = [stop is not None and stop.brake is not None for stop in (one.emergency_stop for one in applications)]
         courses = {place: motion.course for place, motion in motions.items()}
         stopped = {place: motion.stopped_load for place, motion in motions.items() if braked[place]}
-        return cls(Phases.of(applications), Asked.of(applications), courses, stopped)
+        return cls(Phases.of(applications), InputArrays.of(applications), courses, stopped)
 
 
 def unasked_shaft_load_N(application: Application) -> float | None:

@@ -23,7 +23,7 @@ SECONDS = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Choices:
+class GearChoices:
     """Choices of A axes among G gears.
 
     `suits` (A, G), `utilisation` (A, G) of these gears, `weight_kg` (G,) with NaN where none is published, `quantity`
@@ -67,7 +67,7 @@ class Kinds:
     forced: dict[int, tuple[int, ...]]
 
 
-def fewest_kinds(axes: Choices, *, most: int | None = None, seconds: float = SECONDS) -> Kinds:
+def fewest_kinds(axes: GearChoices, *, most: int | None = None, seconds: float = SECONDS) -> Kinds:
     """Sets of least weight for each number of kinds up to `most` and the machine's own.
 
     Axes that no gear suits count nowhere; a gear without a published weight is taken for none. A number of kinds at
@@ -94,9 +94,9 @@ def fewest_kinds(axes: Choices, *, most: int | None = None, seconds: float = SEC
     return Kinds(tuple(steps[count] for count in sorted(steps, reverse=True)), least, _forced(axes.suits))
 
 
-def _weighed(axes: Choices) -> Choices:
+def _weighed(axes: GearChoices) -> GearChoices:
     suits = axes.suits & np.isfinite(axes.weight_kg)
-    return Choices(suits, axes.utilisation, axes.weight_kg, axes.quantity, axes.present)
+    return GearChoices(suits, axes.utilisation, axes.weight_kg, axes.quantity, axes.present)
 
 
 def _forced(suits: BoolArray) -> dict[int, tuple[int, ...]]:
@@ -105,7 +105,7 @@ def _forced(suits: BoolArray) -> dict[int, tuple[int, ...]]:
     return {int(gear): tuple(single[gears == gear].tolist()) for gear in np.unique(gears)}
 
 
-def _step(axes: Choices, best: "_Set", count: int, own: Iterable[int]) -> LightestSet:
+def _step(axes: GearChoices, best: "_Set", count: int, own: Iterable[int]) -> LightestSet:
     """A set with the gears that axes keep at no more weight, up to `count`; gears that no axis takes left out."""
     kinds = _taken(axes, best.gears)
     for gear in sorted(set(own) - set(kinds), key=lambda gear: -np.count_nonzero(axes.present == gear)):
@@ -117,7 +117,7 @@ def _step(axes: Choices, best: "_Set", count: int, own: Iterable[int]) -> Lighte
     return LightestSet(kinds, gear_of, weight_kg, best.is_proven)
 
 
-def _taken(axes: Choices, kinds: Sequence[int]) -> tuple[int, ...]:
+def _taken(axes: GearChoices, kinds: Sequence[int]) -> tuple[int, ...]:
     taken = np.unique(axes.gears_of(kinds))
     return tuple(taken[taken != NO_GEAR].tolist())
 
@@ -144,7 +144,7 @@ class _Search:
     _weight_kg: float = field(default=np.inf, init=False)
 
     @classmethod
-    def of(cls, axes: Choices, own: Sequence[int], end: float) -> "_Search":
+    def of(cls, axes: GearChoices, own: Sequence[int], end: float) -> "_Search":
         """Search over distinct rows of axes, without gears that another one replaces."""
         served = axes.suits.any(axis=1)
         rows, row_of = np.unique(axes.suits[served], axis=0, return_inverse=True)

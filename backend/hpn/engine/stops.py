@@ -28,10 +28,10 @@ class Stops:
     motor_inertia_kgm2: FloatArray
 
     @cached_property
-    def brake(self) -> stop.Brake:
+    def brake(self) -> stop.BrakeFigures:
         """The brake, and what it stops."""
         stated = self.duty.asked["requirements.efficiency"]
-        return stop.Brake(
+        return stop.BrakeFigures(
             torque_Nm=self.duty.asked["emergency_stop.brake.torque_Nm"],
             ratio=self.gears.ratio,
             motor_inertia_kgm2=self.motor_inertia_kgm2,

@@ -14,7 +14,7 @@ from msgspec import structs
 
 from hpn.account import published
 from hpn.account.account import UNLIMITED, Account, CheckLine
-from hpn.account.lines import Line, Table
+from hpn.account.lines import Line, LineTable
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
@@ -141,7 +141,7 @@ def _matched(sides: Sequence[Mapping[str, V]]) -> Iterator[tuple[V | None, ...]]
         yield tuple(side.get(code) for side in sides)
 
 
-def numbered_rows(one: Table | None, other: Table | None) -> Iterator[NumberedRow]:
+def numbered_rows(one: LineTable | None, other: LineTable | None) -> Iterator[NumberedRow]:
     """Rows of two tables that differ, by their numbers."""
     said = (table.values() if table else iter(()) for table in (one, other))
     for place, (before, after) in enumerate(zip_longest(*said)):

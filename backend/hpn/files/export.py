@@ -30,7 +30,7 @@ _NO_XML = re.compile("[^\t\n\r\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010
 
 
 @dataclass(frozen=True)
-class Heading:
+class ExportTitle:
     """The title block: what people call a selection, who answers for it, and what is ordered."""
 
     title: str = ""
@@ -59,7 +59,7 @@ class Export:
     application: Application
     selection: Selection
     link: str
-    heading: Heading = field(default_factory=Heading)
+    heading: ExportTitle = field(default_factory=ExportTitle)
     created: datetime | None = None
     made: datetime | None = None
     catalogue: Catalogue | None = None

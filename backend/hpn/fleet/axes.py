@@ -21,8 +21,8 @@ from hpn.application.phase import ROOM
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.batch import chunks_of
-from hpn.engine.duty import Asked, Duty, Phases, least_torque
-from hpn.fleet.columns import AXIS, COLUMNS, NUMBER, Column, is_list, is_text
+from hpn.engine.duty import Duty, InputArrays, Phases, least_torque
+from hpn.fleet.columns import AXIS, COLUMNS, NUMBER, InputColumn, is_list, is_text
 from hpn.physics.equations import FloatArray
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.titles import LONGEST_NAME, is_title
@@ -145,7 +145,7 @@ class Axes:
         sound = np.array([found is not None for found in judged], np.bool_)
         self._gears = [found[1] for found in judged if found]
         applications = [found[0] for found in judged if found]
-        self._asked = Asked.of(applications) if applications else None
+        self._asked = InputArrays.of(applications) if applications else None
         self._keep(sound[pattern])
         self._pattern = (np.cumsum(sound) - 1)[pattern[sound[pattern]]]
 
@@ -210,7 +210,7 @@ class Axes:
         texts = (getattr(self._asked, name)[self._pattern[axes]] for name in TEXTS)
         of_sizes = self._asked.shaft_centres_mm.items()
         centres = {size: values[self._pattern[axes]] for size, values in of_sizes}
-        return Duty(Phases(*series), Asked(numbers, *[*texts, self._numbers(REVERSES)[axes, None], centres]))
+        return Duty(Phases(*series), InputArrays(numbers, *[*texts, self._numbers(REVERSES)[axes, None], centres]))
 
     @cached_property
     def _phases(self) -> dict[str, FloatArray]:
@@ -270,7 +270,7 @@ def _values(column: pa.ChunkedArray) -> FloatArray:
     return values
 
 
-def _inside(column: Column, values: FloatArray) -> BoolArray:
+def _inside(column: InputColumn, values: FloatArray) -> BoolArray:
     inside = (values >= column.least) & (values <= column.most) & (values > column.above) & (values < np.inf)
     if column.kind == "integer":
         inside &= values == np.floor(values)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.faults import Fault
+from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError, Order
 from hpn.tables.columns import NO_CHOICES, Choices
-from hpn.tables.files import Wanted, text_of
+from hpn.tables.files import TableBounds, text_of
 from hpn.tables.reading import Reading, reading_of
 
 
@@ -49,14 +49,14 @@ class MachineReading:
 
     reading: Reading
     rows: Sequence[Mapping[str, Any]] = ()
-    faults: Sequence[Fault] = ()
+    faults: Sequence[CellFault] = ()
     axes: int = 0
     phases: int = 0
     refusal: str = ""
 
 
 def read_machine(
-    content: bytes | str, wanted: Wanted, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
+    content: bytes | str, wanted: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
 ) -> MachineReading:
     """Reading of a file or a text, as `reading_of` gives it."""
     reading = reading_of(content, wanted, choices, assumed)

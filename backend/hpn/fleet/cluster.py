@@ -10,7 +10,7 @@ from typing import Any
 
 from hpn.fleet.order import FleetError
 from hpn.fleet.run import MEMORY, Engine, Outcome, Size, in_order
-from hpn.fleet.tables import Batch
+from hpn.fleet.tables import RowBatch
 from hpn.installed import require
 
 CONNECT_SECONDS = 10
@@ -22,12 +22,12 @@ class _Workers:
     def __init__(self, client: Any, size: Size) -> None:
         self._client, self._size = client, client.scatter(size, broadcast=True)
 
-    def submit(self, size: Size, batch: Batch) -> Any:
+    def submit(self, size: Size, batch: RowBatch) -> Any:
         """Outcome of a batch that a worker works on; another one takes what a lost worker had."""
         return self._client.submit(_sized, self._size, batch, pure=False)
 
 
-def _sized(size: Size, batch: Batch) -> Outcome:
+def _sized(size: Size, batch: RowBatch) -> Outcome:
     return size(batch)
 
 
@@ -36,7 +36,7 @@ def dask(scheduler: str | None, workers: int) -> Engine:
     require("cluster")
     distributed: Any = import_module("distributed")  # it has no types
 
-    def run(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+    def run(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
         with ExitStack() as stack:
             address = scheduler or stack.enter_context(_of_this_machine(distributed, workers))
             try:

@@ -36,7 +36,7 @@ Place = tuple[str, str, str]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Column(InputField):
+class InputColumn(InputField):
     """A column: its name, and the field whose values its cells, or the items of their lists, are."""
 
     name: str
@@ -94,7 +94,7 @@ ONE_PHASE = re.compile(r"phases\.(?:0|[1-9][0-9]{0,4})\.([A-Za-z_]+)")
 
 
 @lru_cache(maxsize=4096)
-def tolerance_column(name: str) -> Column | None:
+def tolerance_column(name: str) -> InputColumn | None:
     """Column of a tolerance, such as `tolerances.torque_Nm.percent`; None for any other name.
 
     There are as many as inputs, and one for each phase.
@@ -105,7 +105,7 @@ def tolerance_column(name: str) -> Column | None:
     path, field = match[1], ONE_PHASE.fullmatch(match[1])
     if (field[1] not in PHASE_FIGURES) if field else (path not in PHASE_FIGURES and path not in _NUMBERS):
         return None
-    return Column(
+    return InputColumn(
         name=name,
         path=(TOLERANCES, path, *match[2].split(".")),
         kind="number",
@@ -122,10 +122,10 @@ def tolerance_column(name: str) -> Column | None:
 _NUMBERS = {"pause_s", *(name for name, field in FIELDS.items() if field.kind == "number" and not field.is_list)}
 
 
-class Named(dict[str, Column]):
+class ColumnsByName(dict[str, InputColumn]):
     """Columns by name; those of tolerances are known without a line each."""
 
-    def __missing__(self, name: str) -> Column:
+    def __missing__(self, name: str) -> InputColumn:
         column = tolerance_column(name)
         if column is None:
             raise KeyError(name)
@@ -145,18 +145,18 @@ class Named(dict[str, Column]):
 class Columns:
     """Every column that a table of axes may have."""
 
-    phases: Mapping[str, Column]
-    others: Mapping[str, Column]
+    phases: Mapping[str, InputColumn]
+    others: Mapping[str, InputColumn]
 
     @cached_property
-    def at(self) -> Mapping[tuple[str, ...], Column]:
+    def at(self) -> Mapping[tuple[str, ...], InputColumn]:
         """Columns that hold no phases, by their place in the application."""
         return {column.path: column for column in self.others.values()}
 
     @cached_property
-    def all(self) -> Mapping[str, Column]:
+    def all(self) -> Mapping[str, InputColumn]:
         """Columns by name."""
-        return Named({**self.phases, **self.others})
+        return ColumnsByName({**self.phases, **self.others})
 
     def application_of(self, row: Mapping[str, Any]) -> Json:
         """The application that a row stands for, as JSON that the models validate; nulls are not given.
@@ -196,7 +196,7 @@ def _put(document: Json, path: Sequence[str], value: float) -> None:
     document[path[-1]] = value
 
 
-def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]:
+def _phases(row: Mapping[str, Any], columns: Mapping[str, InputColumn]) -> list[Json]:
     lists = {name: row.get(name) or [] for name in columns}
     count = max(map(len, lists.values()))
     return [
@@ -209,7 +209,7 @@ def _phases(row: Mapping[str, Any], columns: Mapping[str, Column]) -> list[Json]
     ]
 
 
-def _plain(value: Any, column: Column) -> Any:
+def _plain(value: Any, column: InputColumn) -> Any:
     """A cell as the models take it: any kind of number as a float, of a text by size what it says in JSON."""
     if column.by_size and isinstance(value, str):
         return _by_size(value)
@@ -228,13 +228,13 @@ def _by_size(text: str) -> Any:
     return found if isinstance(found, dict) else text
 
 
-def _column(name: str, field: InputField, *, is_list: bool) -> Column:
-    return Column(**{**vars(field), "name": name, "is_list": is_list})
+def _column(name: str, field: InputField, *, is_list: bool) -> InputColumn:
+    return InputColumn(**{**vars(field), "name": name, "is_list": is_list})
 
 
 COLUMNS = Columns(
     {name: _column(name, field, is_list=True) for name, field in PHASE_FIELDS.items()},
-    Named(
+    ColumnsByName(
         {
             name: _column(name, field, is_list=field.is_list)
             for name, field in (("pause_s" if field.path == PAUSE else path, field) for path, field in FIELDS.items())

@@ -16,10 +16,10 @@ import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, INDEX, NUMBER, Column, is_list
-from hpn.fleet.faults import Fault
+from hpn.fleet.columns import AXIS, COLUMNS, INDEX, NUMBER, InputColumn, is_list
+from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError
-from hpn.fleet.tables import Batch, Progress, Table
+from hpn.fleet.tables import AxisTable, Progress, RowBatch
 from hpn.words.wording import N_, Sentence
 
 BLOCK_BYTES = HEAD_BYTES = 8_000_000
@@ -56,7 +56,7 @@ def cut(text: str) -> str:
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
 
 
-class CsvTable(Table):
+class CsvTable(AxisTable):
     """Comma-separated values with a header row; lists are JSON in their cells."""
 
     has_untyped_axes = True
@@ -180,17 +180,17 @@ class CsvTable(Table):
         is_list = lines[0].startswith(b'"[')
         return not is_list and any(line.count(b",") >= max(len(self.all_names) - 1, 1) for line in lines[1:-1])
 
-    def _batches(self) -> Iterator[Batch]:
+    def _batches(self) -> Iterator[RowBatch]:
         for texts in self._texts(self.names):
             faults, broken = list(texts.faults), {fault.row for fault in texts.faults}
             columns = []
             for name in self.names:
                 column, wrong = _parsed(texts.rows[name].combine_chunks(), COLUMNS.all.get(name), self.type_of(name))
                 columns.append(column)
-                faults += (Fault(row, name, *reason) for row, reason in wrong if row not in broken)
-            yield Batch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
+                faults += (CellFault(row, name, *reason) for row, reason in wrong if row not in broken)
+            yield RowBatch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
 
-    def _texts(self, names: Sequence[str]) -> Iterator[Batch]:
+    def _texts(self, names: Sequence[str]) -> Iterator[RowBatch]:
         """Cells as text; a row with too few or too many has none but its axis."""
         for block in self.blocks():
             broken: list[pacsv.InvalidRow] = []
@@ -220,10 +220,10 @@ class CsvTable(Table):
                 rows = pa.table({name: pa.array([], pa.string()) for name in names})
             yield self._with_broken(rows, broken)
 
-    def _with_broken(self, rows: pa.Table, broken: Sequence[pacsv.InvalidRow]) -> Batch:
+    def _with_broken(self, rows: pa.Table, broken: Sequence[pacsv.InvalidRow]) -> RowBatch:
         """Rows in their places that have too few or too many cells; the number of a row counts from 1."""
         if not broken:
-            return Batch(rows)
+            return RowBatch(rows)
         is_broken = np.zeros(rows.num_rows + len(broken), bool)
         is_broken[[row.number - 1 for row in broken]] = True
         placed = rows.take(pa.array(np.cumsum(~is_broken) - 1, mask=is_broken))
@@ -231,7 +231,7 @@ class CsvTable(Table):
             axes = pa.array([self._axis_of(row.text, row.actual_columns) for row in broken], pa.string())
             filled = pc.replace_with_mask(placed[AXIS].combine_chunks(), pa.array(is_broken), axes)
             placed = placed.set_column(placed.column_names.index(AXIS), AXIS, filled)
-        return Batch(placed, [Fault(row.number - 1, AXIS, _told(row), "row_length") for row in broken])
+        return RowBatch(placed, [CellFault(row.number - 1, AXIS, _told(row), "row_length") for row in broken])
 
     def _axis_of(self, line: str, cells: int) -> str | None:
         """Axis of a broken row, where its cell has an end, and the header names it."""
@@ -289,7 +289,9 @@ def _as_utf8(content: bytes) -> bytes:
     return content
 
 
-def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tuple[pa.Array, list[tuple[int, Reason]]]:
+def _parsed(
+    texts: pa.Array, column: InputColumn | None, wanted: pa.DataType
+) -> tuple[pa.Array, list[tuple[int, Reason]]]:
     """Values of cells of CSV, and the rows of those that are none, with what would be right."""
     if column is None or pa.types.is_string(wanted):
         broken = pc.fill_null(pc.match_substring(texts, REPLACED), False)
@@ -309,7 +311,7 @@ def _parsed(texts: pa.Array, column: Column | None, wanted: pa.DataType) -> tupl
     return texts.cast(wanted), [(int(row), NO_NUMBER) for row in wrong]
 
 
-def no_list(column: Column) -> Reason:
+def no_list(column: InputColumn) -> Reason:
     """Reason of a cell that is no list."""
     return NO_TEXTS if column.kind == "string" else NO_NUMBERS
 

@@ -15,7 +15,7 @@ OF_PHASE, OF_ITEM, OF_SIZE = (
 TWICE = Sentence(N_("must be unique, with its rows together"))
 
 
-class Fault(NamedTuple):
+class CellFault(NamedTuple):
     """A cell that can't be taken: the row of its batch, its column, what would be right, and a code for programs."""
 
     row: int
@@ -23,7 +23,7 @@ class Fault(NamedTuple):
     reason: Sentence
     code: str
 
-    def moved(self, rows: int) -> "Fault":
+    def moved(self, rows: int) -> "CellFault":
         """The fault of a row that stands further down."""
         return self._replace(row=self.row + rows)
 
@@ -36,7 +36,7 @@ class Reason(msgspec.Struct, frozen=True, array_like=True):
     sentence: Sentence
 
 
-def kept(faults: Sequence[Fault]) -> str:
+def kept(faults: Sequence[CellFault]) -> str:
     """Reasons of an axis as a cell."""
     return msgspec.json.encode([Reason(fault.column, fault.code, fault.reason) for fault in faults]).decode()
 
@@ -48,7 +48,7 @@ def reasons_of(cell: str | None, error: str | None = None) -> list[Reason]:
     return [] if error is None else [Reason("", "invalid", Sentence("{text}", {"text": error}))]
 
 
-def text_of(faults: Sequence[Fault]) -> str:
+def text_of(faults: Sequence[CellFault]) -> str:
     """Reasons of an axis as one text in English."""
     return "; ".join(f"{fault.column}: {fault.reason.text}" for fault in faults)
 

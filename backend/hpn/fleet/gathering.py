@@ -11,8 +11,8 @@ import pyarrow.compute as pc
 
 from hpn.fleet.axes import BoolArray, IntArray
 from hpn.fleet.columns import AXIS, COLUMNS, is_list
-from hpn.fleet.faults import Fault, of_phase
-from hpn.fleet.tables import TOO_LONG, Batch, Table, joined
+from hpn.fleet.faults import CellFault, of_phase
+from hpn.fleet.tables import TOO_LONG, AxisTable, RowBatch, joined
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.wording import N_, Sentence
 
@@ -20,18 +20,18 @@ BROKEN_BEFORE = Sentence(N_("the line before can’t be read, and may belong to 
 DIFFERS = Sentence(N_("must stand in the first row of an axis, or be the same in all of its rows"))
 
 
-def axes_of(table: Table) -> Iterator[Batch]:
+def axes_of(table: AxisTable) -> Iterator[RowBatch]:
     """Axes of a table in list form, some at a time."""
     return table.batches() if table.is_in_list_form else _gathered(_with_axes(table.batches()))
 
 
-def slices(axes: Batch, most: int) -> Iterator[Batch]:
+def slices(axes: RowBatch, most: int) -> Iterator[RowBatch]:
     """Axes so many at a time."""
     row_of = attrgetter("row")
     faults, begun = sorted(axes.faults, key=row_of), 0
     for start in range(0, axes.rows.num_rows, most):
         end = bisect_left(faults, start + most, begun, key=row_of)
-        yield Batch(axes.rows.slice(start, most), [fault.moved(-start) for fault in faults[begun:end]])
+        yield RowBatch(axes.rows.slice(start, most), [fault.moved(-start) for fault in faults[begun:end]])
         begun = end
 
 
@@ -45,7 +45,7 @@ class _Last(NamedTuple):
     is_broken: bool = False
 
 
-def _with_axes(batches: Iterator[Batch]) -> Iterator[Batch]:
+def _with_axes(batches: Iterator[RowBatch]) -> Iterator[RowBatch]:
     """Rows of which each has an axis: a line that can't be read, its axis included, counts as one of the axis before
     it, and the line behind it may belong to either."""
     last = _Last()
@@ -55,7 +55,7 @@ def _with_axes(batches: Iterator[Batch]) -> Iterator[Batch]:
             yield batch
 
 
-def _filled(batch: Batch, before: _Last) -> tuple[Batch, _Last]:
+def _filled(batch: RowBatch, before: _Last) -> tuple[RowBatch, _Last]:
     count = batch.rows.num_rows
     axis = batch.rows[AXIS].combine_chunks()
     missing = np.asarray(pc.is_null(axis))
@@ -69,13 +69,13 @@ def _filled(batch: Batch, before: _Last) -> tuple[Batch, _Last]:
     last = _Last(axis[count - 1].as_py(), bool(broken) and broken[-1] == count - 1)
     if not broken and not suspected:
         return batch, last
-    faults = [*batch.faults, *(Fault(row, AXIS, BROKEN_BEFORE, "row_broken") for row in suspected)]
-    return Batch(batch.rows.set_column(batch.rows.column_names.index(AXIS), AXIS, axis), faults), last
+    faults = [*batch.faults, *(CellFault(row, AXIS, BROKEN_BEFORE, "row_broken") for row in suspected)]
+    return RowBatch(batch.rows.set_column(batch.rows.column_names.index(AXIS), AXIS, axis), faults), last
 
 
-def _gathered(batches: Iterator[Batch]) -> Iterator[Batch]:
+def _gathered(batches: Iterator[RowBatch]) -> Iterator[RowBatch]:
     """Axes of rows that are phases: an axis ends where another begins."""
-    left: Batch | None = None
+    left: RowBatch | None = None
     for batch in batches:
         rows = batch if left is None else joined([left, batch])
         starts, count = run_starts(rows.rows[AXIS]), rows.rows.num_rows
@@ -96,7 +96,7 @@ def run_starts(axis: pa.ChunkedArray) -> IntArray:
     return np.concatenate((np.zeros(1, np.intp), np.flatnonzero(differs) + 1))
 
 
-def _shortened(batch: Batch, starts: IntArray) -> tuple[Batch, IntArray]:
+def _shortened(batch: RowBatch, starts: IntArray) -> tuple[RowBatch, IntArray]:
     """The axes with one phase more than may be where they have more: the reason is the same, however many of their rows
     were read at once."""
     counts = np.diff(np.append(starts, batch.rows.num_rows))
@@ -105,10 +105,10 @@ def _shortened(batch: Batch, starts: IntArray) -> tuple[Batch, IntArray]:
     kept = np.arange(batch.rows.num_rows) - np.repeat(starts, counts) <= MAXIMUM_PHASES
     moved = np.cumsum(kept) - 1
     faults = [fault._replace(row=int(moved[fault.row])) for fault in batch.faults if kept[fault.row]]
-    return Batch(batch.rows.filter(pa.array(kept)), faults), moved[starts]
+    return RowBatch(batch.rows.filter(pa.array(kept)), faults), moved[starts]
 
 
-def _listed(batch: Batch, starts: IntArray) -> Batch:
+def _listed(batch: RowBatch, starts: IntArray) -> RowBatch:
     """Axes whose phases begin at rows: the columns of the phases become lists, of others the first row counts."""
     batch, starts = _shortened(batch, starts)
     rows, first = batch.rows, pa.array(starts)
@@ -120,10 +120,10 @@ def _listed(batch: Batch, starts: IntArray) -> Batch:
         for name in rows.column_names
     ]
     faults = [*_placed(batch.faults, starts), *_differing(rows, starts)]
-    return Batch(pa.Table.from_arrays(columns, names=rows.column_names), faults)
+    return RowBatch(pa.Table.from_arrays(columns, names=rows.column_names), faults)
 
 
-def _placed(faults: Sequence[Fault], starts: IntArray) -> Iterator[Fault]:
+def _placed(faults: Sequence[CellFault], starts: IntArray) -> Iterator[CellFault]:
     """Faults of rows as those of the axes that begin at some of them, each once."""
     given = {(fault.row, fault.column, fault.reason.text): fault for fault in faults}
     for _, fault in sorted(given.items()):
@@ -135,7 +135,7 @@ def _placed(faults: Sequence[Fault], starts: IntArray) -> Iterator[Fault]:
             yield fault._replace(row=place)
 
 
-def _differing(rows: pa.Table, starts: IntArray) -> Iterator[Fault]:
+def _differing(rows: pa.Table, starts: IntArray) -> Iterator[CellFault]:
     """Faults of axes with two values of one input."""
     axis_of = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, rows.num_rows)))
     for name in rows.column_names:
@@ -144,7 +144,7 @@ def _differing(rows: pa.Table, starts: IntArray) -> Iterator[Fault]:
         column = rows[name].combine_chunks()
         codes = _codes(column)
         other = np.asarray(pc.is_valid(column)) & (codes != codes[starts[axis_of]])
-        yield from (Fault(int(place), name, DIFFERS, "differs") for place in np.unique(axis_of[other]))
+        yield from (CellFault(int(place), name, DIFFERS, "differs") for place in np.unique(axis_of[other]))
 
 
 def _codes(column: pa.Array) -> IntArray:

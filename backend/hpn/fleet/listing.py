@@ -19,7 +19,7 @@ from hpn.fleet.gathering import axes_of
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import Order
 from hpn.fleet.outcome import FAULTS, answer_fields
-from hpn.fleet.summary import Summary, summary_of
+from hpn.fleet.summary import AxisCounts, summary_of
 
 MOST_LISTED = 10_000
 """Axes that a page or a report shows one by one; more are in the files."""
@@ -33,7 +33,7 @@ class Listing:
     in list form with the inputs of those that were not rejected. Their names are text.
     """
 
-    summary: Summary
+    summary: AxisCounts
     answers: pa.Table
     axes: pa.Table
 

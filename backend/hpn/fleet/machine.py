@@ -13,16 +13,16 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.columns import AXIS, COLUMNS, Column
+from hpn.fleet.columns import AXIS, COLUMNS, InputColumn
 from hpn.fleet.csv_tables import cut, no_list
-from hpn.fleet.faults import OF_ITEM, OF_PHASE, TWICE, Fault, of_phase
+from hpn.fleet.faults import OF_ITEM, OF_PHASE, TWICE, CellFault, of_phase
 from hpn.fleet.gathering import axes_of
 from hpn.fleet.listing import with_nearest
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import MOST_AXES, MOST_PHASES
 from hpn.fleet.outcome import outcome
-from hpn.fleet.summary import Summary, summary_of
-from hpn.fleet.tables import Batch, with_short_texts
+from hpn.fleet.summary import AxisCounts, summary_of
+from hpn.fleet.tables import RowBatch, with_short_texts
 from hpn.words.wording import N_, Sentence
 
 Axis = Mapping[str, Any]
@@ -39,19 +39,19 @@ NUMBER: tuple[Any, str, str] = (float, N_("must be a number, such as 9.3, not {f
 # --- Out of a table ---------------------------------------------------------------------------------------------------
 
 
-class Given(NamedTuple):
+class MachineRows(NamedTuple):
     """Axes of a table, no more of them than a machine may have, and what is wrong with their cells; and how many there
     are."""
 
     rows: list[dict[str, Any]]
-    faults: list[Fault]
+    faults: list[CellFault]
     axes: int
     phases: int
 
 
-def given_of(content: bytes, name: str) -> Given:
+def given_of(content: bytes, name: str) -> MachineRows:
     """Axes of a table under a name with its suffix; raises FleetError."""
-    rows, faults, axes, phases = list[dict[str, Any]](), list[Fault](), 0, 0
+    rows, faults, axes, phases = list[dict[str, Any]](), list[CellFault](), 0, 0
     for batch in axes_of(open_axes(Path(name), (), content)):
         phases += sum(pc.list_value_length(batch.rows["torque_Nm"]).fill_null(0).to_pylist())
         if axes + batch.rows.num_rows <= MOST_AXES and phases <= MOST_PHASES:
@@ -60,7 +60,7 @@ def given_of(content: bytes, name: str) -> Given:
             rows += ({name: cell for name, cell in row.items() if cell is not None} for row in table.to_pylist())
             faults += (fault.moved(axes) for fault in batch.faults)
         axes += batch.rows.num_rows
-    return Given(rows, faults, axes, phases)
+    return MachineRows(rows, faults, axes, phases)
 
 
 # --- Answers ----------------------------------------------------------------------------------------------------------
@@ -69,19 +69,19 @@ def given_of(content: bytes, name: str) -> Given:
 class Kept(NamedTuple):
     """A machine to be kept: counts of its axes, and tables of answers and inputs as Parquet."""
 
-    summary: Summary
+    summary: AxisCounts
     answers: bytes
     axes: bytes
 
 
 def kept_of(
-    axes: Sequence[Axis], faults: Sequence[Fault], origins: Mapping[str, Sequence[int]], catalogue: Catalogue
+    axes: Sequence[Axis], faults: Sequence[CellFault], origins: Mapping[str, Sequence[int]], catalogue: Catalogue
 ) -> Kept:
     """Answers to axes; `origins` are the rows of a table of cells that the phases of an axis stand in."""
     batch = _once(batch_of(axes, faults))
     names = batch.rows[AXIS].to_pylist()
 
-    def placed(fault: Fault) -> Fault:
+    def placed(fault: CellFault) -> CellFault:
         """A fault by the row of the table in place of its phase."""
         numbers, reason = origins.get(names[fault.row] or "", ()), fault.reason
         place = int(str(reason.values["number"])) - 1 if reason.template == OF_PHASE else len(numbers)
@@ -98,7 +98,7 @@ def kept_of(
 
 def answers_today(asked: bytes, catalogue: Catalogue) -> list[dict[str, Any]]:
     """Answers to the inputs that were kept."""
-    rows: list[dict[str, Any]] = outcome(Batch(table_of(asked)), catalogue)["answers"].to_pylist()
+    rows: list[dict[str, Any]] = outcome(RowBatch(table_of(asked)), catalogue)["answers"].to_pylist()
     return rows
 
 
@@ -117,7 +117,7 @@ def table_of(content: bytes) -> pa.Table:
 # --- From plain data to columns ---------------------------------------------------------------------------------------
 
 
-def batch_of(axes: Sequence[Axis], faults: Sequence[Fault] = ()) -> Batch:
+def batch_of(axes: Sequence[Axis], faults: Sequence[CellFault] = ()) -> RowBatch:
     """Axes as columns; a cell that its column does not take is a fault."""
     columns, found = {AXIS: pa.array([axis[AXIS] or None for axis in axes], pa.string())}, list(faults)
     for name, column in COLUMNS.all.items():
@@ -126,13 +126,13 @@ def batch_of(axes: Sequence[Axis], faults: Sequence[Fault] = ()) -> Batch:
             if column.by_size:  # texts, of which each is a number or an object; the models say what is neither
                 cells = [cell if cell is None or isinstance(cell, str) else json.dumps(cell) for cell in cells]
             for row, wrong in _wrong(cells, column):
-                found.append(Fault(row, name, *wrong))
+                found.append(CellFault(row, name, *wrong))
                 cells[row] = None
             columns[name] = pa.array(cells, column.type)
-    return with_short_texts(Batch(pa.table(columns), found))
+    return with_short_texts(RowBatch(pa.table(columns), found))
 
 
-def _wrong(cells: Sequence[Any], column: Column) -> Iterator[tuple[int, tuple[Sentence, str]]]:
+def _wrong(cells: Sequence[Any], column: InputColumn) -> Iterator[tuple[int, tuple[Sentence, str]]]:
     """Rows of cells that a column does not take, with what would be right and a code."""
     kind, template, code = RIGHT.get("string" if column.by_size else column.kind, NUMBER)
     for row, cell in enumerate(cells):
@@ -162,7 +162,7 @@ def _is(value: Any, kind: Any) -> bool:
     return True
 
 
-def _once(batch: Batch) -> Batch:
+def _once(batch: RowBatch) -> RowBatch:
     """Axes of which each is there once, where it comes first; one that was there again is a fault."""
     names = batch.rows[AXIS].to_pylist()
     counts = Counter(name for name in names if name is not None)
@@ -174,5 +174,5 @@ def _once(batch: Batch) -> Batch:
     torn = {row for place, row in moved.items() if counts[names[place]] > 1}
     own = [fault for fault in batch.faults if fault.row in moved and moved[fault.row] not in torn]
     faults = [fault._replace(row=moved[fault.row]) for fault in own]
-    faults += (Fault(row, AXIS, TWICE, "repeated") for row in sorted(torn))
-    return Batch(batch.rows.take(pa.array(places, pa.int64())), faults)
+    faults += (CellFault(row, AXIS, TWICE, "repeated") for row in sorted(torn))
+    return RowBatch(batch.rows.take(pa.array(places, pa.int64())), faults)

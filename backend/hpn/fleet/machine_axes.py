@@ -15,7 +15,7 @@ import pyarrow.parquet as pq
 
 from hpn.documents.axis import Axis
 from hpn.documents.revision import Frozen, FrozenAxis
-from hpn.fleet.columns import AXIS, COLUMNS, Column, is_list
+from hpn.fleet.columns import AXIS, COLUMNS, InputColumn, is_list
 from hpn.fleet.tables import LONGEST_TEXT
 
 Json = dict[str, Any]
@@ -118,7 +118,7 @@ def _is_plain(phase: Any) -> bool:
     return all(name in COLUMNS.phases and _fits(COLUMNS.phases[name], value) for name, value in phase.items())
 
 
-def _taken(rest: Json, column: Column) -> Any:
+def _taken(rest: Json, column: InputColumn) -> Any:
     """The cell of a column, whose value the application lacks then; None where it has none that fits."""
     *parts, last = column.path
     owners = [rest]
@@ -137,7 +137,7 @@ def _taken(rest: Json, column: Column) -> Any:
     return json.dumps(value) if column.by_size else value
 
 
-def _fits(column: Column, value: Any) -> bool:
+def _fits(column: InputColumn, value: Any) -> bool:
     """True for a value that the column, or the list in it, can hold."""
     if value is None:
         return column.is_list

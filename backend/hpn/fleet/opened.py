@@ -8,11 +8,11 @@ from pathlib import Path
 from hpn.fleet.columns import AXIS, COLUMNS, tolerance_column
 from hpn.fleet.csv_tables import CsvTable, GzipCsvTable
 from hpn.fleet.order import FleetError, status_of, suffix_of, wrong_encoding
-from hpn.fleet.tables import Table
+from hpn.fleet.tables import AxisTable
 from hpn.fleet.typed import ArrowTable, ParquetTable
 from hpn.words.likeness import likeness
 
-FORMATS: dict[str, type[Table]] = {
+FORMATS: dict[str, type[AxisTable]] = {
     ".parquet": ParquetTable,
     ".arrow": ArrowTable,
     ".csv": CsvTable,
@@ -26,7 +26,7 @@ MOST_PROBLEMS = 20
 """Wrong columns that an error names."""
 
 
-def open_axes(path: Path, ignored: Sequence[str] = (), content: bytes | None = None) -> Table:
+def open_axes(path: Path, ignored: Sequence[str] = (), content: bytes | None = None) -> AxisTable:
     """The table of phases or of axes in a file, or in bytes under its name; raises FleetError for columns that are
     missing, unknown or of a wrong type."""
     suffix = suffix_of(path)
@@ -51,7 +51,7 @@ def _require_file(path: Path) -> None:
         raise FleetError(f"{path}: is empty, where a table belongs")
 
 
-def _require(table: Table, allowed: list[str], required: list[str]) -> None:
+def _require(table: AxisTable, allowed: list[str], required: list[str]) -> None:
     allowed = [*allowed, *filter(tolerance_column, table.names)]
     unknown = [name for name in table.names if name not in allowed]
     others = [f"column {name} is missing" for name in required if name not in table.names]

@@ -18,8 +18,8 @@ from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import SUITABLE, UNRATED, Evaluation, Worst, evaluate
 from hpn.fleet.axes import Axes, BoolArray, IntArray, cells_of
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.faults import Fault, kept, text_of
-from hpn.fleet.tables import Batch
+from hpn.fleet.faults import CellFault, kept, text_of
+from hpn.fleet.tables import RowBatch
 from hpn.fleet.toleranced import have_tolerances, over_tolerances
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_, Sentence
@@ -70,11 +70,11 @@ def rejected_fields(axis: pa.DataType) -> pa.Schema:
 
 
 def outcome(
-    batch: Batch,
+    batch: RowBatch,
     catalogue: Catalogue,
     *,
     with_candidates: bool = False,
-    placed: Callable[[Fault], Fault] = lambda fault: fault,
+    placed: Callable[[CellFault], CellFault] = lambda fault: fault,
 ) -> dict[str, pa.Table]:
     """Answers to axes, their faults, and their candidates where they are wanted, by kind.
 
@@ -148,7 +148,7 @@ class _Answers:
         self.worst_utilisation[places] = np.where(found, judged.utilisation[rows, best], np.nan)
         self.worst_governing[places] = np.where(rated, codes[judged.governing[rows, best]], -1)
 
-    def table(self, axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
+    def table(self, axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
         """The answers, with what was wrong."""
         columns = [
             axis,
@@ -188,7 +188,7 @@ def _finite(values: FloatArray) -> pa.Array:
 # --- Faults -----------------------------------------------------------------------------------------------------------
 
 
-def _rejected(axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
+def _rejected(axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
     """A row for each fault."""
     rows = pa.array([fault.row for fault in faults], pa.int64())
     told = [(fault.column, fault.code, fault.reason.text) for fault in faults]
@@ -197,9 +197,9 @@ def _rejected(axis: pa.ChunkedArray, faults: Sequence[Fault]) -> pa.Table:
     return pa.Table.from_arrays(columns, schema=rejected_fields(axis.type))
 
 
-def _reasons(count: int, faults: Sequence[Fault]) -> tuple[pa.Array, pa.Array]:
+def _reasons(count: int, faults: Sequence[CellFault]) -> tuple[pa.Array, pa.Array]:
     """Faults of each axis in one text, and as they are kept; null where there are none."""
-    found = dict[int, list[Fault]]()
+    found = dict[int, list[CellFault]]()
     for fault in faults:
         found.setdefault(fault.row, []).append(fault)
     texts: list[str | None] = [None] * count
@@ -209,9 +209,9 @@ def _reasons(count: int, faults: Sequence[Fault]) -> tuple[pa.Array, pa.Array]:
     return pa.array(texts, pa.string()), pa.array(cells, pa.string())
 
 
-def _all_faults(batch: Batch, is_sound: BoolArray, catalogue: Catalogue) -> list[Fault]:
+def _all_faults(batch: RowBatch, is_sound: BoolArray, catalogue: Catalogue) -> list[CellFault]:
     """Every fault in the order of the rows, the first of each axis alone where there are too many."""
-    known: dict[int, list[Fault]] = {row: [] for row in np.flatnonzero(~is_sound).tolist()}
+    known: dict[int, list[CellFault]] = {row: [] for row in np.flatnonzero(~is_sound).tolist()}
     for fault in batch.faults:
         known[fault.row].append(fault)
     for row, cells in cells_of(batch.rows, [row for row, found in known.items() if not found]):
@@ -219,10 +219,10 @@ def _all_faults(batch: Batch, is_sound: BoolArray, catalogue: Catalogue) -> list
     return [fault for found in known.values() for fault in found[:MOST_FAULTS]]
 
 
-def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fault]:
+def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[CellFault]:
     """Faults of the lists, or else those that the models or the selection find."""
-    faults = [] if cells.get(AXIS) is not None else [Fault(row, AXIS, Sentence(REQUIRED), "missing")]
-    if found := faults + [Fault(row, *fault) for fault in _faults_of_lists(cells)]:
+    faults = [] if cells.get(AXIS) is not None else [CellFault(row, AXIS, Sentence(REQUIRED), "missing")]
+    if found := faults + [CellFault(row, *fault) for fault in _faults_of_lists(cells)]:
         return found
     try:
         application = Application.model_validate(COLUMNS.application_of(cells))
@@ -230,7 +230,7 @@ def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Fau
         with_listed_motor(application, catalogue)
     except (ValidationError, InputError) as error:
         return [located(row, location, sentence, code) for location, sentence, code in sentences_of(error)]
-    return [Fault(row, AXIS, DISAGREED, "invalid")]
+    return [CellFault(row, AXIS, DISAGREED, "invalid")]
 
 
 def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, str]]:
@@ -243,13 +243,13 @@ def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, 
             yield name, Sentence(LENGTHS, {"found": str(len(values)), "count": str(count)}), "list_length"
 
 
-def located(row: int, location: Location, sentence: Sentence, code: str) -> Fault:
+def located(row: int, location: Location, sentence: Sentence, code: str) -> CellFault:
     """Fault at a place of an application, by the column of a table that this is."""
     column, place = COLUMNS.column_at(location)
     if place:
         template, name, value = place
         sentence = Sentence(template, {name: value, "reason": sentence})
-    return Fault(row, column, sentence, code)
+    return CellFault(row, column, sentence, code)
 
 
 # --- Candidates -------------------------------------------------------------------------------------------------------

@@ -19,15 +19,15 @@ from hpn.fleet.gathering import axes_of, slices
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.outcome import outcome
-from hpn.fleet.tables import Batch, Progress
+from hpn.fleet.tables import Progress, RowBatch
 from hpn.fleet.writing import Outcomes, unfinished
 
 SLICE_AXES, SLICE_WITH_CANDIDATES = 16_384, 1_024
 """Axes that are evaluated in one go."""
 
 Outcome = dict[str, pa.Table]
-Size = Callable[[Batch], Outcome]
-Engine = Callable[[Size, Iterator[Batch]], Iterator[Outcome]]
+Size = Callable[[RowBatch], Outcome]
+Engine = Callable[[Size, Iterator[RowBatch]], Iterator[Outcome]]
 """Sizes batches of axes, several at once, and gives what comes of them in their order; few are read ahead."""
 
 Watch = Callable[[Progress], None]
@@ -40,7 +40,7 @@ Use = Callable[[Iterator[pa.Table]], None]
 # --- Engines ----------------------------------------------------------------------------------------------------------
 
 
-def here(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+def here(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
     """Engine of the thread that reads."""
     return map(size, batches)
 
@@ -48,14 +48,14 @@ def here(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
 def threads(workers: int) -> Engine:
     """Engine of so many threads, beside the one that reads and writes; a single one does all."""
 
-    def run(size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+    def run(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
         with ThreadPoolExecutor(workers) as pool:
             yield from in_order(pool, workers, size, batches)
 
     return here if workers == 1 else run
 
 
-def in_order(pool: Any, workers: int, size: Size, batches: Iterator[Batch]) -> Iterator[Outcome]:
+def in_order(pool: Any, workers: int, size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
     """Outcomes of batches that a pool works on, in their order; two wait for each worker, so that memory is bounded."""
     submitted = (pool.submit(size, batch) for batch in batches)
     under_way = deque(islice(submitted, 2 * workers))

@@ -17,7 +17,7 @@ Counts = tuple[tuple[str, int], ...]
 
 
 @dataclass(frozen=True)
-class Summary:
+class AxisCounts:
     """Counts over all axes. `checks` are those that govern the selected gears; `utilisation` counts these by tenths."""
 
     axes: int
@@ -33,7 +33,7 @@ class Summary:
         return self.axes - self.rejected - self.unsuitable
 
 
-def summary_of(answers: Iterable[pa.RecordBatch]) -> Summary:
+def summary_of(answers: Iterable[pa.RecordBatch]) -> AxisCounts:
     """Count the axes of answers, batch by batch."""
     axes, rejected, unsuitable = 0, 0, 0
     gears, checks = Counter[str](), Counter[str]()
@@ -45,7 +45,7 @@ def summary_of(answers: Iterable[pa.RecordBatch]) -> Summary:
         gears.update(_counted(batch["selected"]))
         checks.update(_counted(batch["governing_check"]))
         bins += _in_bins(batch["utilisation"])
-    return Summary(axes, rejected, unsuitable, _ordered(gears), _ordered(checks), tuple(bins.tolist()))
+    return AxisCounts(axes, rejected, unsuitable, _ordered(gears), _ordered(checks), tuple(bins.tolist()))
 
 
 def _counted(names: pa.Array) -> dict[str, int]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hpn.application.faults import BOUNDS
 from hpn.fleet.columns import AXIS, COLUMNS, INDEX, is_list, is_text
-from hpn.fleet.faults import Fault
+from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError
 from hpn.words.wording import Sentence
 
@@ -29,23 +29,23 @@ LONGEST_TEXT = 1000
 TOO_LONG = Sentence(BOUNDS["string_too_long"], {"most": str(LONGEST_TEXT)})
 
 
-class Batch(NamedTuple):
+class RowBatch(NamedTuple):
     """Some rows of a table, and what is wrong with their cells."""
 
     rows: pa.Table
-    faults: Sequence[Fault] = ()
+    faults: Sequence[CellFault] = ()
 
-    def between(self, start: int, end: int) -> "Batch":
+    def between(self, start: int, end: int) -> "RowBatch":
         """The rows from one up to another."""
         faults = [fault.moved(-start) for fault in self.faults if start <= fault.row < end]
-        return Batch(self.rows.slice(start, end - start), faults)
+        return RowBatch(self.rows.slice(start, end - start), faults)
 
 
-def joined(batches: Sequence[Batch]) -> Batch:
+def joined(batches: Sequence[RowBatch]) -> RowBatch:
     """Batches of the same columns one after another."""
     starts = np.cumsum([0, *(batch.rows.num_rows for batch in batches)]).tolist()
     faults = [f.moved(start) for start, batch in zip(starts, batches, strict=False) for f in batch.faults]
-    return Batch(pa.concat_tables([batch.rows for batch in batches]), faults)
+    return RowBatch(pa.concat_tables([batch.rows for batch in batches]), faults)
 
 
 class Progress(NamedTuple):
@@ -56,7 +56,7 @@ class Progress(NamedTuple):
     counted: str
 
 
-class Table(ABC):
+class AxisTable(ABC):
     """A table of axes in a file, or in bytes under its name; FleetError names one that can't be read."""
 
     def __init__(self, path: Path, ignored: Sequence[str] = (), content: bytes | None = None) -> None:
@@ -102,12 +102,12 @@ class Table(ABC):
         """Rows that are read at once where the format leaves the choice."""
         return BATCH_AXES if self.is_in_list_form else BATCH_PHASES
 
-    def batches(self) -> Iterator[Batch]:
+    def batches(self) -> Iterator[RowBatch]:
         """The rows; a text that is too long is a fault; the name of an axis is cut."""
         return map(with_short_texts, self._batches())
 
     @abstractmethod
-    def _batches(self) -> Iterator[Batch]:
+    def _batches(self) -> Iterator[RowBatch]:
         """The rows, as they stand."""
 
     def type_of(self, name: str) -> pa.DataType:
@@ -136,7 +136,7 @@ class Table(ABC):
         return FleetError(f"{self.path}: {where}can’t be read as {self.path.suffix[1:]}: {what}")
 
 
-def with_short_texts(batch: Batch) -> Batch:
+def with_short_texts(batch: RowBatch) -> RowBatch:
     """The rows; a text that is too long is a fault."""
     rows, faults = batch.rows, list(batch.faults)
     for place, name in enumerate(batch.rows.column_names):
@@ -150,8 +150,8 @@ def with_short_texts(batch: Batch) -> Batch:
                 else pc.if_else(pa.array(long), None, column)
             )
             rows = rows.set_column(place, name, cut)
-            faults += (Fault(int(row), name, TOO_LONG, "string_too_long") for row in np.flatnonzero(long))
-    return Batch(rows, faults)
+            faults += (CellFault(int(row), name, TOO_LONG, "string_too_long") for row in np.flatnonzero(long))
+    return RowBatch(rows, faults)
 
 
 def _too_long(column: pa.Array) -> NDArray[np.bool_]:

@@ -14,9 +14,9 @@ import pyarrow.parquet as pq
 import pyarrow.types as kinds
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, INDEX, Column, is_list, is_text, plain_type
-from hpn.fleet.faults import Fault
-from hpn.fleet.tables import Batch, Progress, Table
+from hpn.fleet.columns import AXIS, COLUMNS, INDEX, InputColumn, is_list, is_text, plain_type
+from hpn.fleet.faults import CellFault
+from hpn.fleet.tables import AxisTable, Progress, RowBatch
 from hpn.fleet.uuids import is_uuid, text_of
 from hpn.words.wording import N_, Sentence
 
@@ -28,7 +28,7 @@ FILE_MARK = b"ARROW1"
 """Beginning of an Arrow file; a stream has another."""
 
 
-class TypedTable(Table):
+class TypedTable(AxisTable):
     """A table whose columns have types."""
 
     @property
@@ -99,19 +99,19 @@ class TypedTable(Table):
             wanted = _words(column, self.type_of(name))
         return "" if is_right else f"column {name} is {given!s:.80}, where {wanted} belong"
 
-    def batch(self, rows: pa.RecordBatch) -> Batch:
+    def batch(self, rows: pa.RecordBatch) -> RowBatch:
         """Rows in the types that are read."""
-        columns, faults = [], list[Fault]()
+        columns, faults = [], list[CellFault]()
         for name in self.names:
             column = _plain(rows.column(rows.schema.get_field_index(name)))
             if name == AXIS and _may_be_whole(column.type):
                 column, wrong = _whole(column)
-                faults += (Fault(int(row), AXIS, NOT_WHOLE, "axis_type") for row in np.flatnonzero(wrong))
+                faults += (CellFault(int(row), AXIS, NOT_WHOLE, "axis_type") for row in np.flatnonzero(wrong))
             columns.append(_cast(column, self.type_of(name)))
-        return Batch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
+        return RowBatch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
 
 
-def _words(column: Column, wanted: pa.DataType) -> str:
+def _words(column: InputColumn, wanted: pa.DataType) -> str:
     item = (
         "texts" if column.kind == "string" else "numbers, or objects by size in JSON," if column.by_size else "numbers"
     )
@@ -173,7 +173,7 @@ class ParquetTable(TypedTable):
     def given(self) -> pa.Schema:
         return self._schema
 
-    def _batches(self) -> Iterator[Batch]:
+    def _batches(self) -> Iterator[RowBatch]:
         done, total = 0, self._file.metadata.num_rows
         for group in range(self._file.num_row_groups):
             with self.readable(f"row group {group + 1} "):
@@ -202,7 +202,7 @@ class ArrowTable(TypedTable):
     def given(self) -> pa.Schema:
         return self._schema
 
-    def _batches(self) -> Iterator[Batch]:
+    def _batches(self) -> Iterator[RowBatch]:
         with self._open() as reader:
             is_stream, place = isinstance(reader, pa.RecordBatchStreamReader), 0
             total = None if is_stream else reader.num_record_batches

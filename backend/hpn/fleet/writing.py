@@ -19,7 +19,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, is_text
-from hpn.fleet.faults import TWICE, Fault, kept, text_of
+from hpn.fleet.faults import TWICE, CellFault, kept, text_of
 from hpn.fleet.order import format_of
 from hpn.fleet.outcome import FAULTS, FIELDS, ROW
 from hpn.fleet.uuids import is_uuid, uuids_of
@@ -142,7 +142,7 @@ def _whole(kind: str, table: pa.Table, answers: pa.Table, torn: frozenset[Any], 
 
 def _with_error(answers: pa.Table, is_twice: NDArray[np.bool_]) -> pa.Table:
     """Answers in which a torn axis has an error and nothing else."""
-    fault = Fault(0, AXIS, TWICE, "repeated")
+    fault = CellFault(0, AXIS, TWICE, "repeated")
     columns, told = [answers[AXIS]], {"error": text_of([fault]), FAULTS: kept([fault])}
     for field in list(answers.schema)[1:]:
         instead = pa.scalar(told.get(field.name), field.type)

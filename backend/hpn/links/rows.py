@@ -68,7 +68,7 @@ def used_columns(names: Iterable[str], used: Collection[str]) -> list[str]:
     return shown_columns(names, groups_of(used))
 
 
-class Table:
+class FormTable:
     """Rows of cells by column, and the buttons that edit them."""
 
     def __init__(self, names: Iterable[str], most: int) -> None:

@@ -16,7 +16,7 @@ Figure = FloatArray | float
 
 
 @dataclass(frozen=True, eq=False)
-class Brake:
+class BrakeFigures:
     """A brake that stops an axis through a gear; every figure broadcasts.
 
     Inertias are those of the motor, with the gear's at the input, and of the load at the output; where either is NaN
@@ -66,20 +66,20 @@ class Play:
         return np.asarray(np.multiply(self.torsional_stiffness_Nm_per_rad, self.backlash_rad))
 
 
-def is_stopped(*, brake: Brake, load: LoadTorques) -> NDArray[np.bool_]:
+def is_stopped(*, brake: BrakeFigures, load: LoadTorques) -> NDArray[np.bool_]:
     """True where the brake decelerates the load, i T_B > T_v, whatever the inertias are."""
     stopped: NDArray[np.bool_] = brake.at_output_Nm > np.multiply(load.driving_Nm, 1 + ROUNDING)
     return stopped
 
 
-def is_held(*, brake: Brake, load: LoadTorques) -> NDArray[np.bool_]:
+def is_held(*, brake: BrakeFigures, load: LoadTorques) -> NDArray[np.bool_]:
     """True where the brake holds the load at rest, i T_B > T_d."""
     held: NDArray[np.bool_] = brake.at_output_Nm > np.multiply(load.pulling_Nm, 1 + ROUNDING)
     return held
 
 
 @equation
-def settled_torque(*, brake: Brake, load: LoadTorques) -> FloatArray:
+def settled_torque(*, brake: BrakeFigures, load: LoadTorques) -> FloatArray:
     """Torque T_r = (λ i T_B + T_d) / (1 + η λ) in Nm, λ = J / (i² J_m), about which the gear swings in a stop.
 
     Motor and load slow down as one body, the load driving the motor with losses; without an inertia
@@ -91,14 +91,14 @@ def settled_torque(*, brake: Brake, load: LoadTorques) -> FloatArray:
 
 
 @equation
-def flank_share(*, brake: Brake) -> FloatArray:
+def flank_share(*, brake: BrakeFigures) -> FloatArray:
     """Share B = (1 + λ/η) / (1 + η λ) of T_o² that stays after the losses [-]; without an inertia 1/η²."""
     J, m, eta = brake.load_inertia_kgm2, brake.motor_at_output_kgm2, np.asarray(brake.efficiency)
     return np.where(np.isnan(m + J), 1 / eta**2, (m + J / eta) / (m + eta * J))
 
 
 @equation
-def stop_torque(*, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: Figure) -> FloatArray:
+def stop_torque(*, brake: BrakeFigures, load: LoadTorques, gear: Play, dynamic_factor: Figure) -> FloatArray:
     """Torque T_k = T_r + √(T_r² + 2 T_r (T_o + K3 γ) + B T_o²) in Nm, which the gear does not exceed in a stop.
 
     The load lets go of one flank under T_o, crosses the backlash under the brake's whole torque and swings about T_r on
@@ -117,7 +117,7 @@ def stop_torque(*, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: 
 
 @equation
 def largest_brake_torque(
-    *, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
+    *, brake: BrakeFigures, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
 ) -> FloatArray:
     """Largest torque T_B in Nm, the brake's own not counted, at which T_k stays within a limit L.
 
@@ -137,7 +137,7 @@ def largest_brake_torque(
 
 @equation
 def largest_load_inertia(
-    *, brake: Brake, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
+    *, brake: BrakeFigures, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
 ) -> FloatArray:
     """Largest inertia J of the load in kg m², the brake's own not counted, at which T_k stays within a limit L.
 
@@ -173,7 +173,7 @@ class Stop:
 
 def course_of_stop(
     *,
-    brake: Brake,
+    brake: BrakeFigures,
     load: LoadTorques,
     gear: Play,
     stop_torque_Nm: Figure,

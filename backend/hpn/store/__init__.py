@@ -14,22 +14,23 @@ from hpn.store.errors import (
     StoreUnavailableError,
 )
 from hpn.store.keys import Once
-from hpn.store.machines import WantedLines
-from hpn.store.records import AxisDraft, Line, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
-from hpn.store.saved import Draft, SavedSelection, Summary
+from hpn.store.machines import LineFilter
+from hpn.store.records import AxisDraft, DocumentLine, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
+from hpn.store.saved import Draft, SavedSelection, SelectionLine
 from hpn.store.store import ID, Store
 
 __all__ = [
     "ID",
     "AxisDraft",
     "Change",
+    "DocumentLine",
     "Draft",
     "ExcessError",
     "KeyReusedError",
     "KeySpentError",
     "LabelTakenError",
     "Limits",
-    "Line",
+    "LineFilter",
     "Machine",
     "MachineDraft",
     "NewerDatabaseError",
@@ -39,11 +40,10 @@ __all__ = [
     "RevisionLine",
     "SavedAxis",
     "SavedSelection",
+    "SelectionLine",
     "ShareSpentError",
     "Store",
     "StoreError",
     "StoreFullError",
     "StoreUnavailableError",
-    "Summary",
-    "WantedLines",
 ]

@@ -10,7 +10,7 @@ from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.store.errors import NoRoomError, ShareSpentError
 from hpn.store.keys import Once, take
-from hpn.store.records import ANSWER, DocumentKind, Line, Machine, MachineDraft, RevisionDraft, SavedAxis
+from hpn.store.records import ANSWER, DocumentKind, DocumentLine, Machine, MachineDraft, RevisionDraft, SavedAxis
 from hpn.store.saved import search_text
 from hpn.store.tables import axes, deletions, documents
 from hpn.store.writing import counts_of, insert_axes, insert_revision, order_of, order_text
@@ -21,7 +21,7 @@ MOST_OF_CALLER = 20
 
 LOCK = 0x48504F  # any number but that of the migrations: on PostgreSQL unsaved machines are counted one after another
 
-LINE = [documents.c[field.name] for field in fields(Line)]
+LINE = [documents.c[field.name] for field in fields(DocumentLine)]
 OWN_COLUMNS = [field.name for field in fields(SavedAxis) if field.name not in ("application", "answer")]
 AXIS = [axes.c[name] for name in (*OWN_COLUMNS, *ANSWER, "application")]
 
@@ -128,7 +128,7 @@ def _axis(own: Sequence[Any], answer: Sequence[Any], application: str) -> SavedA
 
 
 @dataclass(frozen=True, slots=True)
-class WantedLines:
+class LineFilter:
     """Which saved documents a list has; None for whichever."""
 
     kind: DocumentKind | None = "machine"
@@ -162,14 +162,14 @@ class WantedLines:
 
 
 async def read_lines(
-    connection: AsyncConnection, wanted: WantedLines, before: tuple[datetime, str] | None, limit: int
-) -> list[Line]:
+    connection: AsyncConnection, wanted: LineFilter, before: tuple[datetime, str] | None, limit: int
+) -> list[DocumentLine]:
     """Saved documents, newest first."""
     c = documents.c
     query = select(*LINE).where(*wanted.conditions()).order_by(c.saved.desc(), c.id.desc()).limit(limit)
     if before is not None:
         query = query.where(tuple_(c.saved, c.id) < tuple_(*before))
-    return [Line(*row) for row in await connection.execute(query)]
+    return [DocumentLine(*row) for row in await connection.execute(query)]
 
 
 async def read_deletions(

@@ -123,7 +123,7 @@ class MachineDraft:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class DocumentLine:
     """One line of a list of documents; `saved` is None while nobody has saved it, `version` counts changes from 1.
 
     `axes`, `suitable`, `unsuitable` and `open` are numbers of axes.
@@ -152,7 +152,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Machine(Line):
+class Machine(DocumentLine):
     """A document with its working copy: common values as JSON, the order of its axes by number, and these or some."""
 
     common: str

@@ -64,7 +64,7 @@ class Draft:
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class SelectionLine:
     """One line of a list of saved selections.
 
     `designation` is the gear that its page shows first, as it was judged then; None where an earlier version has saved
@@ -88,7 +88,7 @@ class Summary:
 
 
 @dataclass(frozen=True, slots=True)
-class SavedSelection(Summary):
+class SavedSelection(SelectionLine):
     """A saved selection as a revision has it; `owner` is the name of the API key that saved it, None without one.
 
     `label` is that of this revision, `revisions` are all, the latest first.
@@ -105,7 +105,7 @@ class SavedSelection(Summary):
 class Page:
     """Part of a list, newest first; `next_cursor` asks for the part that follows, None at the end."""
 
-    selections: list[Summary]
+    selections: list[SelectionLine]
     next_cursor: str | None
 
 

@@ -19,7 +19,7 @@ from hpn.store.changes import Change, Limits, change, freeze, read_revision, rea
 from hpn.store.errors import StoreError, StoreUnavailableError
 from hpn.store.keys import Made, Once, made_by
 from hpn.store.machines import (
-    WantedLines,
+    LineFilter,
     add_machine,
     insert_unsaved,
     read_axes,
@@ -29,9 +29,9 @@ from hpn.store.machines import (
     require_room,
     save_machine,
 )
-from hpn.store.records import DocumentKind, Line, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
+from hpn.store.records import DocumentKind, DocumentLine, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
 from hpn.store.rehearsal import rehearse
-from hpn.store.saved import Draft, Page, SavedSelection, Summary, search_text, unpacked
+from hpn.store.saved import Draft, Page, SavedSelection, SelectionLine, search_text, unpacked
 from hpn.store.tables import catalogues, documents, revisions
 from hpn.store.transactions import Transactions
 from hpn.store.upgrade import missing_parts
@@ -47,7 +47,7 @@ ID = re.compile(r"[A-Za-z0-9_-]{22}")
 LABEL = re.compile(r"[A-Za-z0-9._-]{1,20}")
 """A label of a revision."""
 
-SUMMARY = [documents.c[name] for name in Summary.__dataclass_fields__]
+SUMMARY = [documents.c[name] for name in SelectionLine.__dataclass_fields__]
 
 
 class _Answer(msgspec.Struct):
@@ -185,7 +185,7 @@ class Store(Transactions):
         if cursor is not None:
             query = query.where(tuple_(c.saved, c.id) < tuple_(*_position(cursor)))
         async with self._reading() as connection:
-            found = [Summary(*row) for row in await connection.execute(query)]
+            found = [SelectionLine(*row) for row in await connection.execute(query)]
         more = len(found) > limit
         return Page(found[:limit], _cursor(found[limit - 1].created, found[limit - 1].id) if more else None)
 
@@ -285,12 +285,12 @@ class Store(Transactions):
             return await read_revision(connection, id, label)
 
     async def machines(
-        self, cursor: str | None = None, limit: int = 50, wanted: WantedLines | None = None
-    ) -> tuple[list[Line], str | None]:
+        self, cursor: str | None = None, limit: int = 50, wanted: LineFilter | None = None
+    ) -> tuple[list[DocumentLine], str | None]:
         """Saved machines, newest first, and a cursor to those that follow; ValueError for one that isn't."""
         before = None if cursor is None else _position(cursor)
         async with self._reading() as connection:
-            found = await read_lines(connection, wanted or WantedLines(), before, limit + 1)
+            found = await read_lines(connection, wanted or LineFilter(), before, limit + 1)
         if len(found) <= limit:
             return found, None
         last = found[limit - 1]

@@ -10,9 +10,9 @@ from itertools import groupby, pairwise, product
 from math import isfinite
 from typing import Any
 
-from hpn.tables.bodies import Body, body_of
+from hpn.tables.bodies import TableBody, body_of
 from hpn.tables.by_size import numbers_by_size
-from hpn.tables.cells import DECIMALS, LONGEST_CELL, Decimal, Entry, Merged, entry, is_blank, is_number
+from hpn.tables.cells import DECIMALS, LONGEST_CELL, CellNumber, Decimal, Merged, entry, is_blank, is_number
 from hpn.tables.columns import NO_CHOICES, Choices, Column, proposed, settled
 from hpn.tables.headings import is_of_phase, is_stop
 from hpn.tables.heads import REQUIRED, left_out, skipped
@@ -40,7 +40,7 @@ _OF_AXIS = {"FRi": ("FR", "output_load.radial_N"), "FAi": ("FA", "output_load.ax
 def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> Table:
     """Reading of a table of cells; raises nothing, `problem` says why there is none."""
 
-    def columns_of(body: Body) -> tuple[Column, ...]:
+    def columns_of(body: TableBody) -> tuple[Column, ...]:
         return settled(_with_names(proposed(body, inputs), body), body, inputs, choices, assumed)
 
     try:
@@ -52,7 +52,7 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
         return Table(problem=refused.sentence)
 
 
-def _with_names(columns: list[Column], body: Body) -> list[Column]:
+def _with_names(columns: list[Column], body: TableBody) -> list[Column]:
     """Columns of which one names the phases: headed `name` beside that of the axis, or texts below `Phase`."""
     names = [column for column in columns if column.role == AXIS]
     own = [column for column in names if column.heading.casefold() == NAME.place] if len(names) == 2 else []
@@ -63,13 +63,13 @@ def _with_names(columns: list[Column], body: Body) -> list[Column]:
     return [replace(column, role=NAME.role, skipped=None) if column in own else column for column in columns]
 
 
-def _has_names(body: Body, place: int) -> bool:
+def _has_names(body: TableBody, place: int) -> bool:
     """True for a column of texts that may be names of phases."""
     cells = [row[place] for row in body.rows if not is_blank(row[place])]
     return not all(map(is_number, cells)) and all(is_title(cell, LONGEST_NAME) for cell in cells)
 
 
-def _unmerged(body: Body, columns: Sequence[Column]) -> Body:
+def _unmerged(body: TableBody, columns: Sequence[Column]) -> TableBody:
     """A table in which an axis has its name, and each input that is merged, in its first row alone."""
     axis = next((column.place for column in columns if column.role == AXIS), None)
     once = {column.place for column in columns if column.role not in (*PHASE_ROLES, NAME.role)}
@@ -88,7 +88,7 @@ def _unmerged(body: Body, columns: Sequence[Column]) -> Body:
     return replace(body, rows=tuple(rows))
 
 
-def _with_axes(body: Body, columns: Sequence[Column]) -> Body:
+def _with_axes(body: TableBody, columns: Sequence[Column]) -> TableBody:
     """A table with those of its totals and titles among the rows that name an axis or have numbers of a phase."""
     places = {column.role: column.place for column in columns}
     named = [row for row in (*body.totals, *body.titles) if AXIS in places and not is_blank(row.cells[places[AXIS]])]
@@ -121,7 +121,7 @@ class _AxesInterpreter(Interpreter):
     any_unit = True
     ways_back = (ERROR,)
 
-    def __init__(self, body: Body, columns: tuple[Column, ...], questions: Questions) -> None:
+    def __init__(self, body: TableBody, columns: tuple[Column, ...], questions: Questions) -> None:
         super().__init__(body, columns, questions)
         self.standing: list[int] = []
         self.stops: dict[str, str] = {}
@@ -284,12 +284,12 @@ class _AxesInterpreter(Interpreter):
                 values[column.held.place] = value
         return self._lasting(values, group, times)
 
-    def _number(self, cell: str, found: Entry | None, column: Column) -> float | str | None:
+    def _number(self, cell: str, found: CellNumber | None, column: Column) -> float | str | None:
         """A number in the unit of the wire; the cell as it is written where it is none, None where it is blank."""
         value = self._value(found, column)
         return value if value is not None or is_blank(cell) else str(cell)
 
-    def _value(self, found: Entry | None, column: Column) -> float | None:
+    def _value(self, found: CellNumber | None, column: Column) -> float | None:
         number = self.in_wire(found, column) if found else ""
         return value if number and isfinite(value := float(number)) else None
 
@@ -304,7 +304,7 @@ class _AxesInterpreter(Interpreter):
     def _read(self, column: Column, decimal: Decimal, number: str) -> float | None:
         return self._value(entry(number, decimal, any_unit=True), column)
 
-    def _one(self, found: dict[str, Entry | None], column: Column) -> Any:
+    def _one(self, found: dict[str, CellNumber | None], column: Column) -> Any:
         """Value that the rows of an axis have in common; where they have two, these as they are written: no input."""
         given = [cell for cell in found if not is_blank(cell)]
         if not given or column.held is None:

@@ -38,7 +38,7 @@ class Labelled(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class TableBody:
     """Rows of numbers with their numbers for the user, the headings above each column, and what was left out.
 
     `totals` are rows of numbers by whose names they may be sums, means or extremes of the others, and `titles` rows of
@@ -68,23 +68,23 @@ class Body:
         """Titles with rows of numbers above and below."""
         return tuple(title for title in self.titles if self.numbers[0] < title.number < self.numbers[-1])
 
-    def including(self, more: Iterable[Labelled]) -> "Body":
+    def including(self, more: Iterable[Labelled]) -> "TableBody":
         """With further rows among the others, in their places."""
         rows = dict(zip(self.numbers, self.rows, strict=True)) | {each.number: each.cells for each in more}
         return replace(self, numbers=tuple(sorted(rows)), rows=tuple(rows[number] for number in sorted(rows)))
 
-    def of(self, places: Sequence[int]) -> "Body":
+    def of(self, places: Sequence[int]) -> "TableBody":
         """Some of the rows by their places, in this order."""
         return replace(self, numbers=tuple(self.numbers[k] for k in places), rows=tuple(self.rows[k] for k in places))
 
-    def above(self, number: int) -> "Body":
+    def above(self, number: int) -> "TableBody":
         """The rows above one."""
         count = sum(each < number for each in self.numbers)
         totals = tuple(total for total in self.totals if total.number < number)
         return replace(self, numbers=self.numbers[:count], rows=self.rows[:count], totals=totals)
 
 
-def body_of(grid: Grid, scales: str = "") -> Body:
+def body_of(grid: Grid, scales: str = "") -> TableBody:
     """Rows of a table, the right way round; raises RefusedError where they make no table.
 
     `scales` says which of two numbers counts where a format of a workbook shows another than the cell holds.
@@ -119,7 +119,7 @@ def body_of(grid: Grid, scales: str = "") -> Body:
     if not found:
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
     left_out = tuple(totals), tuple(titles)
-    body = Body((), (), head.headings, tuple(notes), grid, *left_out, settled.dated, settled.scaled, stops)
+    body = TableBody((), (), head.headings, tuple(notes), grid, *left_out, settled.dated, settled.scaled, stops)
     return body.including(found)
 
 

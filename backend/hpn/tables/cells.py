@@ -88,7 +88,7 @@ def spanned(cell: str) -> int:
     return cell.columns if isinstance(cell, Spanning) else 0
 
 
-class Entry(NamedTuple):
+class CellNumber(NamedTuple):
     """A number in plain notation, and the unit written behind it."""
 
     number: str
@@ -126,31 +126,31 @@ def split_unit(text: str) -> tuple[str, str]:
     return (match["number"], (match["per"] or match["unit"]).strip()) if match else (text, "")
 
 
-def entry(cell: str, decimal: Decimal, *, any_unit: bool = False) -> Entry | None:
+def entry(cell: str, decimal: Decimal, *, any_unit: bool = False) -> CellNumber | None:
     """A cell as a number under a decimal mark; None where it is none.
 
     Its unit is one that a phase has, or any that is known, a percentage among them.
     """
     if isinstance(cell, Figure):
         number, _, unit = cell.partition(" ")
-        return None if unit == PERCENT and not any_unit else Entry(number, unit)
+        return None if unit == PERCENT and not any_unit else CellNumber(number, unit)
     return _entry(cell, decimal, any_unit) if len(cell) <= LONGEST_CELL else None
 
 
 @lru_cache(maxsize=20_000)
-def _entry(cell: str, decimal: Decimal, any_unit: bool) -> Entry | None:
+def _entry(cell: str, decimal: Decimal, any_unit: bool) -> CellNumber | None:
     if not any(map(str.isdigit, cell)):
         return None
     if (number := plain_number(cell, decimal)) is not None:
-        return Entry(number, "")
+        return CellNumber(number, "")
     if (seconds := seconds_of(cell)) is not None:
-        return Entry(seconds, "s")
+        return CellNumber(seconds, "s")
     written, unit = (cell[:-1].rstrip(), PERCENT) if cell.endswith(PERCENT) else split_unit(cell)
     codes = codes_for(unit)
     known = unit == PERCENT or bool(codes) if any_unit else any(QUANTITY_OF[code] in _OF_PHASES for code in codes)
     # `1/min` is a unit, and no number of its own; `1'` is no phase's.
     number = plain_number(written, decimal) if known and not codes_for(cell) else None
-    return None if number is None else Entry(number, unit)
+    return None if number is None else CellNumber(number, unit)
 
 
 def plain_number(text: str, decimal: Decimal) -> str | None:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby, pairwise
 
-from hpn.tables.bodies import Body
+from hpn.tables.bodies import TableBody
 from hpn.tables.cells import DECIMALS, TIME_FORMAT, entry, is_blank, is_number
 from hpn.tables.headings import (
     INDEX,
@@ -110,13 +110,13 @@ class Column:
         return self.role == SKIP and self.skipped is not None and self.skipped.template == NUMBERS
 
 
-def proposed(body: Body, inputs: Inputs) -> list[Column]:
+def proposed(body: TableBody, inputs: Inputs) -> list[Column]:
     """Columns that are not empty, by what stands above them."""
     places = range(body.grid.width)
     return [_proposed(body, place, inputs) for place in places if any(not is_blank(row[place]) for row in body.rows)]
 
 
-def _proposed(body: Body, place: int, inputs: Inputs) -> Column:
+def _proposed(body: TableBody, place: int, inputs: Inputs) -> Column:
     headings = body.headings[place]
     heading = " ".join(" ".join(text.split()) for text in headings)[:LONGEST]
     cells = [row[place] for row in body.rows if not is_blank(row[place])]
@@ -154,7 +154,7 @@ def by_units(written: Collection[str]) -> str:
     return next((role for role in REQUIRED if found == {QUANTITIES[role]}), "")
 
 
-def counts(body: Body, place: int) -> bool:
+def counts(body: TableBody, place: int) -> bool:
     """True for a column of several rows that goes 1, 2, 3 or 0, 1, 2."""
     cells = [row[place].removesuffix(".") for row in body.rows]
     return len(cells) > 1 and any(cells == [str(k + start) for k in range(len(cells))] for start in (0, 1))
@@ -186,7 +186,7 @@ def numbers_axes(cells: Sequence[str]) -> bool:
 
 
 def settled(
-    columns: Sequence[Column], body: Body, inputs: Inputs, choices: Choices, assumed: Collection[str]
+    columns: Sequence[Column], body: TableBody, inputs: Inputs, choices: Choices, assumed: Collection[str]
 ) -> tuple[Column, ...]:
     """Columns with the answers about them and with their units.
 
@@ -227,7 +227,7 @@ def _answered(column: Column, roles: Collection[str], choices: Choices) -> Colum
     return column
 
 
-def _with_unit(column: Column, body: Body, inputs: Inputs, choices: Choices, assumed: Collection[str]) -> Column:
+def _with_unit(column: Column, body: TableBody, inputs: Inputs, choices: Choices, assumed: Collection[str]) -> Column:
     """A column with what it holds and with its unit, as somebody has said it or as it is written."""
     held = inputs.by_role.get(column.role)
     if held is None:
@@ -249,7 +249,7 @@ def _with_unit(column: Column, body: Body, inputs: Inputs, choices: Choices, ass
     return replace(column, unit=held.unit if held.unit in assumed and not angular else "")
 
 
-def units_in(body: Body, place: int, *, any_unit: bool = False) -> set[str]:
+def units_in(body: TableBody, place: int, *, any_unit: bool = False) -> set[str]:
     """Units behind the numbers of a column, a blank one for a number without."""
     found = set()
     for row in body.rows:

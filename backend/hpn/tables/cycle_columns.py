@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import chain
 
-from hpn.tables.bodies import TOO_FEW, Body
+from hpn.tables.bodies import TOO_FEW, TableBody
 from hpn.tables.cells import is_blank, is_number, moment_of
 from hpn.tables.columns import Choices, Column, by_units, counts, proposed, settled, units_in
 from hpn.tables.headings import is_name, is_remark
@@ -14,7 +14,7 @@ from hpn.tables.sheets import RefusedError, no_number
 from hpn.words.titles import LONGEST_NAME, is_title
 
 
-def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
+def columns_of(body: TableBody, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
     """Columns with the answers about them and with their units; raises RefusedError for less than three of numbers."""
     found = proposed(body, CYCLE)
     if sum(not column.text for column in found) < len(REQUIRED):
@@ -27,7 +27,7 @@ def columns_of(body: Body, choices: Choices, assumed: Collection[str]) -> tuple[
     return settled(found, body, CYCLE, choices, assumed)
 
 
-def _column_of_names(columns: Sequence[Column], body: Body) -> Column | None:
+def _column_of_names(columns: Sequence[Column], body: TableBody) -> Column | None:
     """Column that names the phases unless somebody says otherwise: the one that this service writes so, one of texts
     with a heading that says so, else the first of texts, remarks last; most rows have one that may be a name, and not
     all the same.
@@ -45,7 +45,7 @@ def _column_of_names(columns: Sequence[Column], body: Body) -> Column | None:
     return min(found, key=lambda column: (is_remark(column.heading), not is_name(column.heading)), default=None)
 
 
-def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
+def _too_few(body: TableBody, columns: Sequence[Column]) -> RefusedError:
     """Error for less than three columns of numbers."""
     for number, row in zip(body.numbers, body.rows, strict=True):
         wrong = next((cell for cell in row if not is_blank(cell) and not is_number(cell)), None)
@@ -55,7 +55,7 @@ def _too_few(body: Body, columns: Sequence[Column]) -> RefusedError:
     return RefusedError(TOO_FEW, row=body.numbers[0], cells=cells)
 
 
-def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:
+def _by_place(body: TableBody, columns: Sequence[Column]) -> dict[int, str]:
     """Quantities of columns without a heading: by the units in their cells, else torque, speed, duration in order.
 
     None for more than three columns, nor where the first may count the phases, or its texts name quantities.
@@ -70,7 +70,7 @@ def _by_place(body: Body, columns: Sequence[Column]) -> dict[int, str]:
     return dict(zip(numeric, REQUIRED, strict=True))
 
 
-def has_two_ways(body: Body) -> bool:
+def has_two_ways(body: TableBody) -> bool:
     """True where a phase can be a row or a column: three rows of as many plain numbers or more, and nothing else."""
     places = range(body.grid.width)
     if body.headed or len(body.rows) != len(REQUIRED) or len(places) < len(REQUIRED) or counts(body, 0):

@@ -6,8 +6,8 @@ from fractions import Fraction
 from math import isclose, nan
 from typing import Any, NamedTuple
 
-from hpn.tables.bodies import DIVIDED, Body, Labelled, body_of
-from hpn.tables.cells import DECIMALS, TIME_PARTED, Decimal, Entry, entry, is_blank, is_number
+from hpn.tables.bodies import DIVIDED, Labelled, TableBody, body_of
+from hpn.tables.cells import DECIMALS, TIME_PARTED, CellNumber, Decimal, entry, is_blank, is_number
 from hpn.tables.columns import CELLS, NO_CHOICES, Choices, Column
 from hpn.tables.cycle_columns import columns_of, has_two_ways
 from hpn.tables.headings import heading_over, is_pause
@@ -118,7 +118,7 @@ def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _Found
         return _Found(Table(problem=refused.sentence, separator=grid.separator))
 
 
-def _one_cycle(body: Body, asked: Questions) -> Body:
+def _one_cycle(body: TableBody, asked: Questions) -> TableBody:
     """A table as far as its rows are one cycle: those below a title may be of another."""
     for title in body.parting[:1]:
         template = N_("Row {row}, “{text}”, stands between the phases. Are they one cycle?")
@@ -128,7 +128,7 @@ def _one_cycle(body: Body, asked: Questions) -> Body:
     return body
 
 
-def _without_totals(body: Body, columns: tuple[Column, ...], asked: Questions) -> Body:
+def _without_totals(body: TableBody, columns: tuple[Column, ...], asked: Questions) -> TableBody:
     """A table without the rows that are totals; of those that are only named so it is asked."""
     reading = _CycleInterpreter(body, columns, Questions(asked.answers))
     reading.read_numbers()
@@ -174,7 +174,7 @@ class _CycleInterpreter(Interpreter):
             given = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
             if given == {"t"} and any(map(is_pause, cells)):
                 self.rows[k] = tuple(
-                    Entry("0", column.held.unit if column.held and column.unit == CELLS else "")
+                    CellNumber("0", column.held.unit if column.held and column.unit == CELLS else "")
                     if column.role in ("T", "n")
                     else cell
                     for column, cell in zip(self.used, row, strict=True)
@@ -237,7 +237,7 @@ class _CycleInterpreter(Interpreter):
                     raise _no_number_of(number, cell, column)
         raise RefusedError(N_("the rows use different decimal marks: use a point or a comma throughout"))
 
-    def code(self, found: Entry, column: Column) -> str:
+    def code(self, found: CellNumber, column: Column) -> str:
         """Code of the unit that a number is in; raises RefusedError where the column says another, or it is unclear."""
         code = super().code(found, column)
         if not found.unit:
@@ -330,7 +330,7 @@ def _no_number_of(row: int, cell: str, column: Column) -> RefusedError:
 # --- Totals -----------------------------------------------------------------------------------------------------------
 
 
-def _totals_of(body: Body, used: Sequence[Column], mark: Decimal) -> list[Labelled]:
+def _totals_of(body: TableBody, used: Sequence[Column], mark: Decimal) -> list[Labelled]:
     """Rows that are totals of the others in the columns that are used, their numbers read with a decimal mark."""
     named = {total.number for total in body.totals}
     phases = [row for number, row in zip(body.numbers, body.rows, strict=True) if number not in named]
@@ -366,7 +366,7 @@ def _sums_up(total: Labelled, rows: Sequence[Sequence[str]], used: Sequence[Colu
     )
 
 
-def _entry(cell: str, mark: Decimal) -> Entry | None:
+def _entry(cell: str, mark: Decimal) -> CellNumber | None:
     return next(filter(None, (entry(cell, each) for each in (mark, *DECIMALS))), None)
 
 

@@ -33,7 +33,7 @@ MOST_CELLS_IN_ALL = 4 * MOST_CELLS
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class TableBounds:
     """Table that is wanted of a file: inputs that its columns may hold, its most rows and its longest text, and those
     that are taken as they are.
 
@@ -60,7 +60,7 @@ class Contents:
     problem: Sentence | None = None
 
 
-def contents_of(content: bytes | str, wanted: Wanted) -> Contents:
+def contents_of(content: bytes | str, wanted: TableBounds) -> Contents:
     """Contents of a file or a text; raises nothing but MemoryError, `problem` says why it can't be read."""
     if isinstance(content, str):
         return _of_text(content, wanted)
@@ -84,7 +84,7 @@ def contents_of(content: bytes | str, wanted: Wanted) -> Contents:
     return _of_text(text, wanted)
 
 
-def _of_gzip(content: bytes, wanted: Wanted) -> Contents:
+def _of_gzip(content: bytes, wanted: TableBounds) -> Contents:
     """Contents of a CSV file in gzip: no more of it is unpacked than a table may have, which one taken as it is tells
     by its first lines."""
     try:
@@ -95,7 +95,7 @@ def _of_gzip(content: bytes, wanted: Wanted) -> Contents:
     return replace(found, suffix=".csv.gz") if found.suffix else found
 
 
-def _of_text(text: str, wanted: Wanted) -> Contents:
+def _of_text(text: str, wanted: TableBounds) -> Contents:
     try:
         if not text.lstrip().startswith("{"):
             if wanted.takes is None and (phases := _phases(text, wanted)):
@@ -110,7 +110,7 @@ def _of_text(text: str, wanted: Wanted) -> Contents:
         return Contents(text=text if len(text) <= wanted.most_characters else "", problem=refused.sentence)
 
 
-def _phases(text: str, wanted: Wanted) -> Grid | None:
+def _phases(text: str, wanted: TableBounds) -> Grid | None:
     """Table of phases as a list of objects of JSON with plain values; None for any other text."""
     if not text.lstrip().startswith("[") or len(text) > wanted.most_characters:
         return None

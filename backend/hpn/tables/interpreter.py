@@ -13,13 +13,13 @@ from itertools import chain
 from math import inf, isfinite
 from typing import Any, NamedTuple
 
-from hpn.tables.bodies import Body
+from hpn.tables.bodies import TableBody
 from hpn.tables.cells import (
     DECIMALS,
     LONGEST_CELL,
     PERCENT,
+    CellNumber,
     Decimal,
-    Entry,
     entry,
     is_blank,
     is_number,
@@ -33,7 +33,7 @@ from hpn.tables.inputs import AXIS
 from hpn.tables.numbers import either, known_units
 from hpn.tables.questions import Questions
 from hpn.tables.sheets import RefusedError
-from hpn.tables.table import Choice, Shown, ShownRow, skipped_among
+from hpn.tables.table import Choice, PreviewCell, ShownRow, skipped_among
 from hpn.tables.times import (
     DAY,
     FIRST,
@@ -63,7 +63,7 @@ SHARES = ("u", "eta", "fw")
 MOSTLY = 0.75
 """Share of the axes from which on all times count as going on: a bad cell in one changes nothing for the others."""
 
-Row = tuple[Entry | None, ...]
+Row = tuple[CellNumber | None, ...]
 
 
 class Series(NamedTuple):
@@ -107,7 +107,7 @@ class Interpreter:
     any_unit = False
     ways_back: Sequence[str] = (SORTED, FIRST)
 
-    def __init__(self, body: Body, columns: tuple[Column, ...], questions: Questions) -> None:
+    def __init__(self, body: TableBody, columns: tuple[Column, ...], questions: Questions) -> None:
         self.body, self.columns, self.questions = body, columns, questions
         self.ask, self.choose = questions.ask, questions.choose
         self.used = [column for column in columns if column.is_number]
@@ -142,17 +142,17 @@ class Interpreter:
             found.append(ShownRow(int(str(note.values["row"])), skipped=str(note.values["text"])))
         return tuple(sorted(found, key=lambda row: row.number))
 
-    def _shown(self, cell: str, column: Column) -> Shown:
+    def _shown(self, cell: str, column: Column) -> PreviewCell:
         text = str(cell[:LONGEST_CELL])
         if not column.is_number or is_blank(cell):
-            return Shown(text, kind="text" if column.held else "unread")
+            return PreviewCell(text, kind="text" if column.held else "unread")
         found = {entry(cell, mark, any_unit=True) for mark in ((self.decimal,) if self.decimal else DECIMALS)} - {None}
         read = found.pop() if len(found) == 1 else None
         if read is None:
-            return Shown(text, kind="asked")
+            return PreviewCell(text, kind="asked")
         if column.held and (wire := in_wire(read, column)):
-            return Shown(wire, column.held.unit, "number", text)
-        return Shown(*read, "number")
+            return PreviewCell(wire, column.held.unit, "number", text)
+        return PreviewCell(*read, "number")
 
     # --- Columns ------------------------------------------------------------------------------------------------------
 
@@ -266,11 +266,11 @@ class Interpreter:
         row, column = divmod(place, len(self.used))
         return self.body.rows[row][self.used[column].place]
 
-    def code(self, found: Entry, column: Column) -> str:
+    def code(self, found: CellNumber, column: Column) -> str:
         """Code of the unit that a number is in; a kind of table may raise RefusedError."""
         return code_of(found, column)
 
-    def in_wire(self, found: Entry, column: Column) -> str:
+    def in_wire(self, found: CellNumber, column: Column) -> str:
         """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
         return in_wire(found, column, self.code)
 
@@ -370,7 +370,7 @@ class Interpreter:
         return bool(going_on)
 
 
-def code_of(found: Entry, column: Column) -> str:
+def code_of(found: CellNumber, column: Column) -> str:
     """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
     if not found.unit:
         return column.unit
@@ -378,7 +378,7 @@ def code_of(found: Entry, column: Column) -> str:
     return codes[0] if len(codes) == 1 else ""
 
 
-def in_wire(found: Entry, column: Column, code_of: Callable[[Entry, Column], str] = code_of) -> str:
+def in_wire(found: CellNumber, column: Column, code_of: Callable[[CellNumber, Column], str] = code_of) -> str:
     """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
     if found.unit == PERCENT:
         return str(decimals.Decimal(found.number).scaleb(-2)) if column.role in SHARES else ""

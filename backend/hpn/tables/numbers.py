@@ -58,7 +58,7 @@ class Entry(str):
         return entry
 
 
-class Shown(NamedTuple):
+class FieldTexts(NamedTuple):
     """Texts for the fields, by the texts of the wire that were asked for, and the field `was`."""
 
     texts: list[str]
@@ -184,7 +184,7 @@ def _tidy(text: str) -> str:
     return text.strip().translate(DASHES)
 
 
-def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str | None) -> Shown:
+def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str | None) -> FieldTexts:
     """Texts of the wire, with their units, as the reader's form shows them; `written` marks how they came in.
 
     The reader's own entries stay as typed. Numbers from elsewhere are shown to five digits in another unit, or to all
@@ -197,7 +197,7 @@ def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str |
         texts.append(field.text if alike[field.short] < 2 else field.exact)
         if field.value is not None and field.read(texts[-1]) != field.value:
             was.append(f"{field.unit}:{_plain(field.value)}")
-    return Shown(texts, " ".join(dict.fromkeys(was)))
+    return FieldTexts(texts, " ".join(dict.fromkeys(was)))
 
 
 class _Field:

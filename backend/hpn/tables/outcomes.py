@@ -10,7 +10,7 @@ from hpn.tables.columns import Choices
 from hpn.tables.cycles import read_grids
 from hpn.tables.inputs import PHASE_ROLES
 from hpn.tables.sheets import Grid
-from hpn.tables.table import Choice, Outcome, Table
+from hpn.tables.table import Choice, Interpretation, Table
 from hpn.words.wording import N_, Quantity, Sentence
 
 MOST_ROWS_TRIED, MOST_OPTIONS_TRIED = 100, 6
@@ -27,7 +27,7 @@ def with_outcomes(table: Table, grids: Sequence[Grid], choices: Choices, assumed
     if not 0 < table.rows <= MOST_ROWS_TRIED:
         return table
     options = [(choice, code) for choice in table.choices for code in choice.options][:MOST_OPTIONS_TRIED]
-    found: dict[str, dict[str, Outcome]] = {}
+    found: dict[str, dict[str, Interpretation]] = {}
     for choice, code in options:
         answer: dict[str, Any] = {"totals": choices.totals or "sum", choice.name: code}
         if outcome := _outcome(read_grids(grids, replace(choices, **answer), assumed)):
@@ -39,14 +39,14 @@ def with_outcomes(table: Table, grids: Sequence[Grid], choices: Choices, assumed
     return replace(table, choices=tuple(map(told, table.choices)))
 
 
-def _outcome(table: Table) -> Outcome | None:
+def _outcome(table: Table) -> Interpretation | None:
     speeds, times = ([float(phase[PHASE_ROLES.index(role)] or 0) for phase in table.phases] for role in "nt")
     sizes = [abs(speed) for speed in speeds]
     if not table.whole or table.lasting_s is None or not isfinite(max(sizes)):
         return None
     ends = {"lowest": Quantity(min(sizes), "rpm"), "highest": Quantity(max(sizes), "rpm")}
     sentence = Sentence(OUTCOME, {**ends, "time": Quantity(table.lasting_s, "s")})
-    return Outcome(sentence, _course(speeds, accumulate(times), table.lasting_s))
+    return Interpretation(sentence, _course(speeds, accumulate(times), table.lasting_s))
 
 
 def _course(speeds: Sequence[float], ends: Iterable[float], lasting: float) -> str:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from hpn.tables.axes import read_axes
 from hpn.tables.columns import NO_CHOICES, Choices
 from hpn.tables.cycles import read_grids
-from hpn.tables.files import Wanted, contents_of
+from hpn.tables.files import TableBounds, contents_of
 from hpn.tables.outcomes import with_outcomes
 from hpn.tables.sheets import Grid
 from hpn.tables.table import Table
@@ -36,7 +36,7 @@ class Reading:
 
 
 def reading_of(
-    content: bytes | str, wanted: Wanted, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
+    content: bytes | str, wanted: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
 ) -> Reading:
     """Reading of a file or a text, by the answers to its questions; raises nothing but MemoryError.
 
@@ -62,7 +62,7 @@ def _mark_of(content: bytes | str) -> str:
     return hashlib.sha256(content).hexdigest()[:16]
 
 
-def _table(found: Sequence[Grid] | Sentence, wanted: Wanted, choices: Choices, assumed: Collection[str]) -> Table:
+def _table(found: Sequence[Grid] | Sentence, wanted: TableBounds, choices: Choices, assumed: Collection[str]) -> Table:
     """The table of a sheet; of axes the reading that knows most columns, out of those by each separator."""
     if isinstance(found, Sentence):
         return Table(problem=found)

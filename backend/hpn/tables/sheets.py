@@ -56,7 +56,7 @@ def too_many_cells() -> RefusedError:
     return RefusedError(template, most=MOST_CELLS)
 
 
-class Room:
+class CellBudget:
     """Cells and characters that a file may still have: one short text may stand in each of very many cells."""
 
     def __init__(self, cells: int = MOST_CELLS) -> None:
@@ -121,7 +121,7 @@ def grid_of(rows: Iterable[Sequence[str]], separator: str = "", numbers: Iterabl
 
     Raises RefusedError for none, and for more cells than the longest cycle has.
     """
-    room = Room()
+    room = CellBudget()
     kept = list[tuple[int, Sequence[str], int]]()
     for number, row in zip(itertools.count(1) if numbers is None else numbers, rows, strict=False):
         if any(row):

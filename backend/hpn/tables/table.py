@@ -14,7 +14,7 @@ MOST_SKIPPED = 5
 """Rows that are skipped which stand among the others."""
 
 
-class Outcome(NamedTuple):
+class Interpretation(NamedTuple):
     """Result of reading a table in one way: speeds and time in words, and the course of the speed as a path in SVG."""
 
     sentence: Sentence
@@ -33,10 +33,10 @@ class Choice:
     question: Sentence | None = None
     chosen: str = ""
     numbers: Mapping[str, str] = field(default_factory=dict)
-    outcomes: Mapping[str, Outcome] = field(default_factory=dict)
+    outcomes: Mapping[str, Interpretation] = field(default_factory=dict)
 
 
-class Shown(NamedTuple):
+class PreviewCell(NamedTuple):
     """A cell of a preview: a number in plain notation with its unit, one with two readings or none, or a text.
 
     A number that is `written` in some way is in the unit of the wire, given as suffix; any other in the unit behind it.
@@ -52,7 +52,7 @@ class ShownRow(NamedTuple):
     """A row of a preview by its number: its cells, or its text if it is skipped; and how many are hidden above it."""
 
     number: int
-    cells: tuple[Shown, ...] = ()
+    cells: tuple[PreviewCell, ...] = ()
     skipped: str = ""
     hidden: int = 0
 

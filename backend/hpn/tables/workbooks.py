@@ -17,7 +17,7 @@ from warnings import catch_warnings
 
 from hpn.tables.cells import THOUSANDS, Figure, Merged, Spanning, is_number, tidy, written
 from hpn.tables.number_formats import LONGEST_FORMAT, section_of
-from hpn.tables.sheets import LONGEST_TEXT, MOST_CELLS, Grid, RefusedError, Room, grid_of, too_many_cells
+from hpn.tables.sheets import LONGEST_TEXT, MOST_CELLS, CellBudget, Grid, RefusedError, grid_of, too_many_cells
 from hpn.words.wording import N_, Sentence
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def _read(content: bytes) -> Sheets:
     with catch_warnings(action="ignore"):  # of styles that are missing, and what else no cell shows
         book = openpyxl.load_workbook(BytesIO(content), read_only=True, data_only=True, keep_links=False)
     sheets: Sheets = {}
-    room = Room(MOST_CELLS_OF_BOOK)
+    room = CellBudget(MOST_CELLS_OF_BOOK)
     with suppress(AttributeError):  # sheets of charts have no cells
         for sheet in book.worksheets[:MOST_SHEETS]:
             if sheet.sheet_state == "visible" and (read := _sheet(Worksheet(sheet), room)).rows:
@@ -143,8 +143,8 @@ def _read(content: bytes) -> Sheets:
     return sheets
 
 
-def _sheet(sheet: "Worksheet", room: Room) -> Sheet:
-    rows, own, last = dict[int, list[str]](), Room(), 0
+def _sheet(sheet: "Worksheet", room: CellBudget) -> Sheet:
+    rows, own, last = dict[int, list[str]](), CellBudget(), 0
     for number, row in sheet.rows():
         last = max(number, last + 1)  # a number that is there twice is no row above
         if last > MOST_ROWS:

@@ -10,7 +10,7 @@ from msgspec import Raw, structs
 
 from hpn.catalogue import Catalogue
 from hpn.documents import revision
-from hpn.documents.answers import Asked, AxisAnswer, answers
+from hpn.documents.answers import AxisAnswer, AxisQuestion, answers
 from hpn.documents.axis import Axis, phases_of
 from hpn.documents.merge import Resolved, merged, resolve
 from hpn.store import AxisDraft, Machine, RevisionDraft, SavedAxis
@@ -66,7 +66,7 @@ def common_of(machine: Machine) -> Json:
 
 def drafts_of(axes: Sequence[Axis], common: Mapping[str, Any], catalogue: Catalogue) -> list[AxisDraft]:
     """Axes to be kept, all of them answered together."""
-    asked = [Asked(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in axes]
+    asked = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in axes]
     return [draft_of(axis, answer) for axis, answer in zip(axes, answers(asked, catalogue), strict=True)]
 
 

@@ -8,7 +8,7 @@ import msgspec
 from starlette.requests import Request
 
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import Asked, answers
+from hpn.documents.answers import AxisQuestion, answers
 from hpn.documents.axis import Axis
 from hpn.documents.gears import Placed, gears_of
 from hpn.documents.kinds import MachineKinds, Sought, kinds_of
@@ -63,7 +63,7 @@ def drafted(
     axes: list[tuple[SavedAxis, dict[str, Any]]], common: Mapping[str, Any], catalogue: Catalogue
 ) -> list[AxisDraft]:
     """Axes with other own values, all answered together."""
-    asked = [Asked(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
+    asked = [AxisQuestion(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
     found = answers(asked, catalogue)
     return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, found, strict=True)]
 
@@ -237,7 +237,7 @@ def plan_undo(
     if undo.added:
         return plan_removal(machine, [there[number] for number in undo.added if number in there], by)
     common = common_of(machine)
-    found = answers([Asked(resolved(axis, common), axis.ordering_code) for axis in gone], catalogue)
+    found = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone], catalogue)
     back = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, found, strict=True)]
     return Change(machine.version, by, restored=back), Undo(added=tuple(number for number, _ in back))
 

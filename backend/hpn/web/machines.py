@@ -11,7 +11,7 @@ from starlette.requests import Request
 
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import Asked, answers
+from hpn.documents.answers import AxisQuestion, answers
 from hpn.documents.axis import MOST_AXES, MOST_PHASES, MOST_REVISIONS
 from hpn.store import Change, ExcessError, KeyReusedError, KeySpentError, Limits, Machine, Once, SavedAxis
 from hpn.store.records import Answer, DocumentKind
@@ -167,7 +167,7 @@ def require_document(request: Request, machine: Machine) -> None:
 
 def answered(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) -> list[tuple[int, int, Answer]]:
     """Answers of the axes of a document under common values, as a change has them."""
-    asked = [Asked(resolved(axis, common), axis.ordering_code) for axis in machine.items]
+    asked = [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in machine.items]
     return [
         (axis.number, axis.version, columns_of(answer))
         for axis, answer in zip(machine.items, answers(asked, catalogue), strict=True)

@@ -16,14 +16,14 @@ from hpn.explain.calculation.formula import Formula, Subtraction, Term, inside, 
 from hpn.explain.calculation.handbook import HANDBOOK
 from hpn.explain.calculation.motor import MOTOR
 from hpn.explain.calculation.output_bearing import bearing_steps
-from hpn.explain.calculation.sheet import Comparison, LackingFigureError, Line, Sheet, Step
+from hpn.explain.calculation.sheet import CalculationSheet, Comparison, EquationLine, LackingFigureError, Step
 from hpn.explain.calculation.stiffness import frequency_steps, position_steps
 from hpn.explain.calculation.stop import stop_steps
 from hpn.words.wording import N_, Sentence
 
-__all__ = ["Comparison", "Line", "Step", "calculation_of"]
+__all__ = ["Comparison", "EquationLine", "Step", "calculation_of"]
 
-STEPS: tuple[Callable[[Sheet], Iterable[Step]], ...] = (
+STEPS: tuple[Callable[[CalculationSheet], Iterable[Step]], ...] = (
     *(stop_steps, *HANDBOOK, *MOTOR),
     *(bearing_steps, frequency_steps, position_steps),
 )
@@ -44,7 +44,7 @@ def calculation_of(
     saved. Steps that need an unpublished figure, or one that the answer lacks, are left out; a step whose equations do
     not give the figures of the answer keeps its comparisons alone.
     """
-    sheet = Sheet(candidate, duty, gear, with_listed_motor(application, catalogue), catalogue)
+    sheet = CalculationSheet(candidate, duty, gear, with_listed_motor(application, catalogue), catalogue)
     return tuple(step if _holds(step) else _as_saved(step) for make in STEPS for step in _known(make(sheet)))
 
 

@@ -52,11 +52,11 @@ class Expression:
     def __rmul__(self, other: float) -> "Product":
         return Product((Constant(other), _formula(self)))
 
-    def __truediv__(self, other: "Operand") -> "Quotient":
-        return Quotient(_formula(self), _formula(other))
+    def __truediv__(self, other: "Operand") -> "Fraction":
+        return Fraction(_formula(self), _formula(other))
 
-    def __rtruediv__(self, other: float) -> "Quotient":
-        return Quotient(Constant(other), _formula(self))
+    def __rtruediv__(self, other: float) -> "Fraction":
+        return Fraction(Constant(other), _formula(self))
 
     def __pow__(self, other: "Operand") -> "Power":
         return Power(_formula(self), _formula(other))
@@ -106,7 +106,7 @@ class Sum(Expression):
 
 
 @dataclass(frozen=True, eq=False)
-class Series(Expression):
+class PhaseSum(Expression):
     """A sum over the phases: `make` gives the term of a phase from its quantities, in their order."""
 
     make: "Callable[..., Formula]"
@@ -150,7 +150,7 @@ class Product(Expression):
 
 
 @dataclass(frozen=True, slots=True)
-class Quotient(Expression):
+class Fraction(Expression):
     """A fraction; `flat` where it stands in an exponent."""
 
     above: "Formula"
@@ -188,7 +188,7 @@ class Largest(Expression):
     of: "tuple[Formula, ...]"
 
 
-Formula = Term | Constant | Sum | Series | Subtraction | Product | Quotient | Power | Root | Magnitude | Largest
+Formula = Term | Constant | Sum | PhaseSum | Subtraction | Product | Fraction | Power | Root | Magnitude | Largest
 
 Operand = Expression | float
 
@@ -197,7 +197,7 @@ def _formula(operand: Operand) -> Formula:
     return cast(Formula, operand if isinstance(operand, Expression) else Constant(operand))
 
 
-TEN_THIRDS = Quotient(Constant(10), Constant(3), flat=True)
+TEN_THIRDS = Fraction(Constant(10), Constant(3), flat=True)
 
 
 def value_of(formula: Formula, instead: Mapping[Variable, float] | None = None) -> float:
@@ -223,7 +223,7 @@ def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
     match formula:
         case Term(symbol, value):
             return instead.get(symbol, value)
-        case Constant(value=value) | Series(total=value):
+        case Constant(value=value) | PhaseSum(total=value):
             return value
         case Sum(terms):
             return sum(each(terms))
@@ -231,7 +231,7 @@ def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
             return _evaluated(left, instead) - _evaluated(right, instead)
         case Product(factors):
             return math.prod(each(factors))
-        case Quotient(above, below):
+        case Fraction(above, below):
             return _evaluated(above, instead) / _evaluated(below, instead)
         case Power(base, exponent):
             return _evaluated(base, instead) ** _evaluated(exponent, instead)
@@ -243,9 +243,9 @@ def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
             return max(each(of))
 
 
-def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> Series:
+def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> PhaseSum:
     """Series over the phases; `make` gives the term of a phase from its quantities, in their order."""
-    return Series(make, quantities)
+    return PhaseSum(make, quantities)
 
 
 def in_wire_units(formula: Formula) -> bool:
@@ -260,7 +260,7 @@ def inside(formula: Formula) -> Iterator[Formula]:
     match formula:
         case Sum(parts) | Product(parts) | Largest(parts):
             inner: tuple[Formula, ...] = parts
-        case Subtraction(first, second) | Quotient(first, second) | Power(first, second):
+        case Subtraction(first, second) | Fraction(first, second) | Power(first, second):
             inner = (first, second)
         case Root(body) | Magnitude(body):
             inner = (body,)

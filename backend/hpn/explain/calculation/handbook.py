@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from hpn.explain.calculation.formula import TEN_THIRDS, Constant, Root, Term, Variable, over_phases, value_of
-from hpn.explain.calculation.sheet import Line, Sheet, Step, step_of_check
+from hpn.explain.calculation.sheet import CalculationSheet, EquationLine, Step, step_of_check
 from hpn.physics.equations import ROUNDING
 from hpn.words.quantities import DUTY
 from hpn.words.wording import N_, Quantity, Sentence
@@ -19,7 +19,7 @@ LARGEST_WORTH_ROUNDING = 1e6
 """Largest number that is rounded to a whole number by hand."""
 
 
-def _average_torque(sheet: Sheet) -> Iterable[Step]:
+def _average_torque(sheet: CalculationSheet) -> Iterable[Step]:
     above = over_phases(lambda n, t, T: abs(n) * t * T**TEN_THIRDS, sheet.speed, sheet.time, sheet.torque)
     notes = [
         Sentence(
@@ -33,31 +33,31 @@ def _average_torque(sheet: Sheet) -> Iterable[Step]:
         notes.append(Sentence(N_("Torques and speeds enter by magnitude, whatever their sign.")))
     if sheet.varies:
         notes.append(Sentence(VARYING))
-    line = Line(sheet.T_av, Root(above / sheet.travel, TEN_THIRDS))
+    line = EquationLine(sheet.T_av, Root(above / sheet.travel, TEN_THIRDS))
     yield step_of_check("average_torque", (line,), sheet.compared("average_torque", sheet.T_av), tuple(notes))
 
 
-def _average_output_speed(sheet: Sheet) -> Iterable[Step]:
+def _average_output_speed(sheet: CalculationSheet) -> Iterable[Step]:
     named = DUTY["average_output_speed_rpm"]
-    line = Line(sheet.n_out_av, sheet.travel / sheet.cycle_time)
+    line = EquationLine(sheet.n_out_av, sheet.travel / sheet.cycle_time)
     yield Step("average_output_speed", named.name, named.equation, (line,))
 
 
 # --- Input speeds -----------------------------------------------------------------------------------------------------
 
 
-def _average_input_speed(sheet: Sheet) -> Iterable[Step]:
+def _average_input_speed(sheet: CalculationSheet) -> Iterable[Step]:
     line = _average_input_speed_line(sheet)
     codes = ("average_input_speed", "motor_rated_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, line.result))
     yield step_of_check("average_input_speed", (line,), limits, _hand_input_speed(sheet, line))
 
 
-def _average_input_speed_line(sheet: Sheet) -> Line:
-    return Line(sheet.n_in_av, sheet.i * sheet.n_out_av)
+def _average_input_speed_line(sheet: CalculationSheet) -> EquationLine:
+    return EquationLine(sheet.n_in_av, sheet.i * sheet.n_out_av)
 
 
-def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
+def _hand_input_speed(sheet: CalculationSheet, line: EquationLine) -> tuple[Sentence, ...]:
     if (speed := _hand(sheet.n_out_av.value)) is None:
         return ()
     by_hand = line.by_hand({sheet.n_out_av.symbol: speed})
@@ -68,8 +68,8 @@ def _hand_input_speed(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
     return (Sentence(text, values),)
 
 
-def _maximum_input_speed(sheet: Sheet) -> Iterable[Step]:
-    line = Line(sheet.n_in_max, sheet.n_out_max * sheet.i)
+def _maximum_input_speed(sheet: CalculationSheet) -> Iterable[Step]:
+    line = EquationLine(sheet.n_in_max, sheet.n_out_max * sheet.i)
     codes = ("maximum_input_speed", "motor_speed")
     limits = tuple(limit for code in codes for limit in sheet.compared(code, sheet.n_in_max))
     yield step_of_check("maximum_input_speed", (line,), limits, _on_peaks(sheet))
@@ -78,7 +78,7 @@ def _maximum_input_speed(sheet: Sheet) -> Iterable[Step]:
 # --- Peaks ------------------------------------------------------------------------------------------------------------
 
 
-def _peaks(sheet: Sheet) -> Iterable[Step]:
+def _peaks(sheet: CalculationSheet) -> Iterable[Step]:
     tested = {"repeated_peak_torque": sheet.T_max, "momentary_peak_torque": sheet.T_k}
     for code, torque in tested.items():
         if torque is not None and (limit := sheet.compared(code, torque)):
@@ -86,11 +86,11 @@ def _peaks(sheet: Sheet) -> Iterable[Step]:
             yield step_of_check(code, (), limit, notes)
 
 
-def _on_peaks(sheet: Sheet) -> tuple[Sentence, ...]:
+def _on_peaks(sheet: CalculationSheet) -> tuple[Sentence, ...]:
     return (Sentence(PEAKS),) if sheet.varies else ()
 
 
-def _stops(sheet: Sheet) -> Iterable[Step]:
+def _stops(sheet: CalculationSheet) -> Iterable[Step]:
     T_k, T_R = sheet.T_k, sheet.rating("repeated_peak_torque_Nm")
     if T_k is None or T_R is None:
         return
@@ -102,13 +102,13 @@ def _stops(sheet: Sheet) -> Iterable[Step]:
         return
     exponent = 8.5 - 1.5 * (T_k / T_R)
     x = Term(Variable("x"), value_of(exponent))
-    count = Line(allowed, 10**x, rounded_down=True)
+    count = EquationLine(allowed, 10**x, rounded_down=True)
     expected = sheet.given("emergency_stop.count") or allowed
     limit = sheet.compared("momentary_peak_count", expected)
-    yield step_of_check("momentary_peak_count", (Line(x, exponent), count), limit, _hand_stops(x, count))
+    yield step_of_check("momentary_peak_count", (EquationLine(x, exponent), count), limit, _hand_stops(x, count))
 
 
-def _hand_stops(x: Term, count: Line) -> tuple[Sentence, ...]:
+def _hand_stops(x: Term, count: EquationLine) -> tuple[Sentence, ...]:
     rounded = round(x.value, 2)
     by_hand = count.by_hand({x.symbol: rounded})
     if by_hand == count.result.value:
@@ -120,7 +120,7 @@ def _hand_stops(x: Term, count: Line) -> tuple[Sentence, ...]:
 # --- Life -------------------------------------------------------------------------------------------------------------
 
 
-def _life(sheet: Sheet) -> Iterable[Step]:
+def _life(sheet: CalculationSheet) -> Iterable[Step]:
     T_N, L_10 = sheet.rating("rated_torque_Nm"), sheet.figure("life_L10_h")
     if T_N is None:
         return
@@ -137,11 +137,11 @@ def _life(sheet: Sheet) -> Iterable[Step]:
             "rated torque on a basis of 50 % failures. The handbook leaves open which applies."
         )
     )
-    line = Line(L_10, formula)
+    line = EquationLine(L_10, formula)
     yield step_of_check("life", (line,), sheet.compared("life", L_10), (*_hand_life(sheet, line), basis))
 
 
-def _hand_life(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
+def _hand_life(sheet: CalculationSheet, line: EquationLine) -> tuple[Sentence, ...]:
     torque, output_speed = _hand(sheet.T_av.value), _hand(sheet.n_out_av.value)
     if not torque or not output_speed:
         return ()
@@ -163,7 +163,7 @@ def _hand_life(sheet: Sheet, line: Line) -> tuple[Sentence, ...]:
     return (Sentence(text, values),)
 
 
-def _is_printed(sheet: Sheet) -> bool:
+def _is_printed(sheet: CalculationSheet) -> bool:
     """True for the worked example of the handbook."""
     example = type(sheet.application).worked_example()
     return sheet.application.duty_cycle == example.duty_cycle and sheet.gear.designation == "HPN-20A-5"

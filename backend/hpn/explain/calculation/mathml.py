@@ -8,13 +8,13 @@ from html import escape
 from hpn.explain.calculation.formula import (
     Constant,
     Formula,
+    Fraction,
     Largest,
     Magnitude,
+    PhaseSum,
     Power,
     Product,
-    Quotient,
     Root,
-    Series,
     Subtraction,
     Sum,
     Term,
@@ -23,7 +23,7 @@ from hpn.explain.calculation.formula import (
     inside,
     value_of,
 )
-from hpn.explain.calculation.sheet import Comparison, Line, Step
+from hpn.explain.calculation.sheet import Comparison, EquationLine, Step
 from hpn.physics.equations import FloatArray
 from hpn.words.reader import Reader
 from hpn.words.wording import Quantity
@@ -51,17 +51,17 @@ def mathml(reader: Reader, *parts: Part) -> str:
     return f'<math display="block" alttext="{escape(text)}"><mrow>{written}</mrow></math>'
 
 
-def in_symbols(reader: Reader, line: Line) -> str:
+def in_symbols(reader: Reader, line: EquationLine) -> str:
     """An equation as the handbook prints it."""
     return mathml(reader, (line.result.symbol, False), "=", (line.formula, False))
 
 
-def substituted(reader: Reader, line: Line) -> str:
+def substituted(reader: Reader, line: EquationLine) -> str:
     """The same equation's right side with its numbers."""
     return mathml(_reader_of(reader, line), "=", (line.formula, True))
 
 
-def result(reader: Reader, line: Line) -> str:
+def result(reader: Reader, line: EquationLine) -> str:
     """Result of the equation; a count is rounded down."""
     reader = _reader_of(reader, line)
     given = (Constant(line.result.value, line.result.unit), True)
@@ -70,7 +70,7 @@ def result(reader: Reader, line: Line) -> str:
     return mathml(reader, "=", given)
 
 
-def _reader_of(reader: Reader, line: Line) -> Reader:
+def _reader_of(reader: Reader, line: EquationLine) -> Reader:
     """The reader, in the units of the wire where the line holds in them alone."""
     return replace(reader, units=()) if in_wire_units(line.formula) else reader
 
@@ -127,8 +127,8 @@ class Addition:
 
 def addition(reader: Reader, step: Step) -> Addition | None:
     """Sums of a step, where a term is more than a product of inputs, with every power that it takes."""
-    series = [one for line in step.lines for one in inside(line.formula) if isinstance(one, Series)]
-    columns = list[tuple[Series, Formula]]()
+    series = [one for line in step.lines for one in inside(line.formula) if isinstance(one, PhaseSum)]
+    columns = list[tuple[PhaseSum, Formula]]()
     for one in sorted(series, key=lambda one: len(_factors(one.general))):
         powers = [factor for factor in _factors(one.general) if isinstance(factor, Power)]
         columns += [
@@ -152,7 +152,7 @@ def _factors(formula: Formula) -> tuple[Formula, ...]:
     return formula.factors if isinstance(formula, Product) else (formula,)
 
 
-def total(reader: Reader, series: Series) -> str:
+def total(reader: Reader, series: PhaseSum) -> str:
     """Sum of a series of quantities in the reader's units."""
     return _written(reader, math.fsum(series.values(series.general, _in_units_of(reader)).tolist()))
 
@@ -190,9 +190,9 @@ class _Writer:
                 return self.number(formula.value, formula.unit)
             case Sum(terms):
                 return self.row("+", map(self.write, terms))
-            case Series(general=Term(unit=unit)) if self.numbers:
+            case PhaseSum(general=Term(unit=unit)) if self.numbers:
                 return self.number(formula.total, unit)
-            case Series():
+            case PhaseSum():
                 return self.plain(total(self.reader, formula)) if self.numbers else self.summed(formula.general)
             case Subtraction(left, right):
                 return self.row("−", (self.write(left), self.factor(right)))
@@ -203,15 +203,15 @@ class _Writer:
                 return self.write(body) if plain else self.fenced("|", body, "|")
             case Largest(of):
                 return self.call("max", map(self.write, of))
-            case Quotient() | Power() | Root():
+            case Fraction() | Power() | Root():
                 return self.shaped(formula)
 
-    def shaped(self, formula: Quotient | Power | Root) -> str:
+    def shaped(self, formula: Fraction | Power | Root) -> str:
         """Formula that is not a row of operands, such as a fraction."""
         match formula:
-            case Quotient(above, below, flat=True):
+            case Fraction(above, below, flat=True):
                 return self.row("/", (self.write(above), self.write(below)))
-            case Quotient(above, below):
+            case Fraction(above, below):
                 return f"<mfrac>{self.write(above)}{self.write(below)}</mfrac>"
             case Power(base, exponent):
                 return f"<msup>{self.base(base)}{self.write(exponent)}</msup>"
@@ -273,10 +273,10 @@ class _Liner(_Writer):
         """Parts with an operator between them."""
         return (operator if operator in "·/" else f" {operator} ").join(parts)
 
-    def shaped(self, formula: Quotient | Power | Root) -> str:
+    def shaped(self, formula: Fraction | Power | Root) -> str:
         """Fractions, powers and roots in one line."""
         match formula:
-            case Quotient(above, below):
+            case Fraction(above, below):
                 return f"{self.grouped(above)}/{self.grouped(below)}"
             case Power(base, exponent):
                 return f"{self.base(base)}^{self.grouped(exponent)}"

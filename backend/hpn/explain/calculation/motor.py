@@ -8,7 +8,7 @@ import numpy as np
 
 from hpn.engine.motor_torques import efficiency_at
 from hpn.explain.calculation.formula import Formula, PhaseValues, Root, Sum, Term, Variable, over_phases, values_of
-from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
+from hpn.explain.calculation.sheet import CalculationSheet, EquationLine, Step, known, step_of_check
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, peak_instant, square_torque
 from hpn.words.quantities import CANDIDATE, INPUTS
@@ -25,7 +25,7 @@ BY_CURVE = N_(
 )
 
 
-def _torques(sheet: Sheet) -> Iterable[Step]:
+def _torques(sheet: CalculationSheet) -> Iterable[Step]:
     course, inertia = sheet.duty.courses.get(0), sheet.given("requirements.motor.inertia_kgm2")
     if course is not None and inertia is not None:
         return _along_the_motion(sheet, course, inertia)
@@ -41,7 +41,7 @@ def _torques(sheet: Sheet) -> Iterable[Step]:
 # --- With the motor's own inertia -------------------------------------------------------------------------------------
 
 
-def _along_the_motion(sheet: Sheet, course: Course, inertia: Term) -> Iterable[Step]:
+def _along_the_motion(sheet: CalculationSheet, course: Course, inertia: Term) -> Iterable[Step]:
     """Torques with the motor's own inertia: the peak at its instant, the RMS from that of each phase."""
     inertia, T_0 = _own_inertia(sheet, inertia), _without_load(sheet)
     text = N_("From T / (i · η) + J_m · i · α at every instant of the motion; T · η / i where the load drives.")
@@ -64,19 +64,19 @@ def _along_the_motion(sheet: Sheet, course: Course, inertia: Term) -> Iterable[S
     yield from _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *common, of_each)
 
 
-def _own_inertia(sheet: Sheet, motor: Term) -> Term:
+def _own_inertia(sheet: CalculationSheet, motor: Term) -> Term:
     """Inertia at the input: the motor's, with the gear's own where it is known."""
     own = sheet.gear.inertia_kgm2
     return replace(motor, value=motor.value + own) if own else motor
 
 
-def _without_load(sheet: Sheet) -> float:
+def _without_load(sheet: CalculationSheet) -> float:
     """Torque of the gear without load in Nm; 0 where it is not known."""
     return sheet.gear.no_load_torque_Nm or 0.0
 
 
 def _at_its_instant(
-    sheet: Sheet, course: Course, inertia: Term, efficiency: FloatArray
+    sheet: CalculationSheet, course: Course, inertia: Term, efficiency: FloatArray
 ) -> tuple[Formula, tuple[Sentence, ...]]:
     """Largest torque as the parts of the load and of the motor's inertia, with notes on both."""
     i = sheet.i.value
@@ -118,12 +118,12 @@ def _magnitude_of(parts: Sequence[tuple[float, Formula]]) -> Formula:
     return formula
 
 
-def _efficiencies(sheet: Sheet, torque_Nm: FloatArray) -> FloatArray:
+def _efficiencies(sheet: CalculationSheet, torque_Nm: FloatArray) -> FloatArray:
     """Efficiency of the gear at the torque of every phase."""
     return efficiency_at(torque_Nm, sheet.gear, sheet.catalogue, sheet.duty.asked["requirements.efficiency"].item())
 
 
-def _on_efficiency(sheet: Sheet) -> tuple[Sentence]:
+def _on_efficiency(sheet: CalculationSheet) -> tuple[Sentence]:
     """Source of the efficiency."""
     if sheet.given("requirements.efficiency") is not None:
         return (Sentence(STATED),)
@@ -133,7 +133,7 @@ def _on_efficiency(sheet: Sheet) -> tuple[Sentence]:
 # --- Phase by phase ---------------------------------------------------------------------------------------------------
 
 
-def _by_phase(sheet: Sheet) -> Iterable[Step]:
+def _by_phase(sheet: CalculationSheet) -> Iterable[Step]:
     """Motor torques phase by phase, the efficiency read at the peak for the peak and at the RMS for the RMS."""
     eta, eta_rms = (
         PhaseValues(EFFICIENCY, _efficiencies(sheet, torque.values)) for torque in (sheet.peak_torque, sheet.rms_torque)
@@ -155,23 +155,23 @@ def _by_phase(sheet: Sheet) -> Iterable[Step]:
     return _steps(sheet, of_phase(str(largest + 1), largest), Root(squares / sheet.cycle_time))
 
 
-def _steps(sheet: Sheet, peak: Formula, rated: Formula) -> Iterable[Step]:
+def _steps(sheet: CalculationSheet, peak: Formula, rated: Formula) -> Iterable[Step]:
     notes = (*_on_efficiency(sheet), *([Sentence(OWN)] if _without_load(sheet) else []))
     yield from _step(sheet, "motor_peak_torque", MOTOR_PEAK, peak, *notes)
     yield from _step(sheet, "motor_rated_torque", MOTOR_RMS, rated, *notes)
 
 
-def _step(sheet: Sheet, code: str, symbol: Variable, formula: Formula, *notes: Sentence) -> Iterable[Step]:
+def _step(sheet: CalculationSheet, code: str, symbol: Variable, formula: Formula, *notes: Sentence) -> Iterable[Step]:
     if not sheet.candidate.says(f"{code}_Nm"):
         return
     torque = replace(known(sheet.figure(f"{code}_Nm")), symbol=symbol)
-    yield step_of_check(code, (Line(torque, formula),), sheet.compared(code, torque), notes)
+    yield step_of_check(code, (EquationLine(torque, formula),), sheet.compared(code, torque), notes)
 
 
 # --- Torque limit of the drive ---------------------------------------------------------------------------------------
 
 
-def _torque_limit(sheet: Sheet) -> Iterable[Step]:
+def _torque_limit(sheet: CalculationSheet) -> Iterable[Step]:
     """Torque at the motor with which the gear stays at or below T_R."""
     limit, T_R = sheet.figure("motor_torque_limit_Nm"), sheet.rating("repeated_peak_torque_Nm")
     if limit is None or T_R is None:
@@ -182,14 +182,14 @@ def _torque_limit(sheet: Sheet) -> Iterable[Step]:
     elif sheet.gear.designation in sheet.catalogue.efficiency:
         source = N_("η at T_R from the efficiency curve that you supplied.")
     eta = Term(EFFICIENCY, _efficiencies(sheet, np.array(T_R.value)).item())
-    title, line = CANDIDATE["motor_torque_limit_Nm"].name, Line(limit, eta * T_R / sheet.i)
+    title, line = CANDIDATE["motor_torque_limit_Nm"].name, EquationLine(limit, eta * T_R / sheet.i)
     yield Step("torque_limit", title, None, (line,), (), (Sentence(source),))
 
 
 # --- Inertia ----------------------------------------------------------------------------------------------------------
 
 
-def _inertia_ratio(sheet: Sheet) -> Iterable[Step]:
+def _inertia_ratio(sheet: CalculationSheet) -> Iterable[Step]:
     """Inertia of the load at the motor over the motor's own."""
     load, motor = sheet.load_inertia, sheet.given("requirements.motor.inertia_kgm2")
     if load is None or motor is None or sheet.given("requirements.motor.inertia_ratio") is None:

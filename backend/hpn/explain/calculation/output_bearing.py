@@ -8,7 +8,7 @@ from hpn.application.shaft_centre import by_size
 from hpn.engine.figures import phase_loads, radial_at_centre, shaft_centre_mm
 from hpn.explain.calculation.formula import Constant, Formula, Largest, PhaseValues, Root, Term, Variable, over_phases
 from hpn.explain.calculation.shaft import notes_on_shaft, of_shaft
-from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
+from hpn.explain.calculation.sheet import CalculationSheet, EquationLine, Step, known, step_of_check
 from hpn.physics import bearing
 from hpn.words.quantities import CANDIDATE, INPUTS
 from hpn.words.terms import ENVELOPE_BASIS
@@ -24,7 +24,7 @@ CENTRE_OF_SIZE = N_("x_c is the distance that you gave for {name}.")
 CENTRE_OF_OTHERS = N_("x_c is the distance that you gave for all sizes without one of their own.")
 
 
-def bearing_steps(sheet: Sheet) -> Iterable[Step]:
+def bearing_steps(sheet: CalculationSheet) -> Iterable[Step]:
     """Steps of the output bearing where loads are given and its limits are known."""
     load, life = sheet.application.loads, sheet.candidate.check("output_bearing_life")
     if load is None or life is None or life.demand is None or life.limit is None:
@@ -40,7 +40,7 @@ def bearing_steps(sheet: Sheet) -> Iterable[Step]:
 # --- Largest load -----------------------------------------------------------------------------------------------------
 
 
-def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> Step:
+def _largest(sheet: CalculationSheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> Step:
     """Step of the equivalent load of each different load, the largest one compared with the published maxima."""
     first: dict[tuple[float, float], int] = {}
     for place, pair in enumerate(zip(sheet.radial.values.tolist(), sheet.axial.values.tolist(), strict=True)):
@@ -50,7 +50,7 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     index = {place: "" if len(phases) == 1 else str(place + 1) for place in phases}
     basis = SUPPLIED if load.model == "digitised" else Sentence(ENVELOPE_BASIS[load.model])
     notes = [basis, *notes_on_shaft(sheet), *_note_on_centre(sheet, load)]
-    lines: list[Line] = []
+    lines: list[EquationLine] = []
     if load.model != "digitised":
         shown = sorted({*phases[: SHOWN_LOADS - 1], worst})
         for place in shown:
@@ -65,7 +65,7 @@ def _largest(sheet: Sheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> S
     return step_of_check("output_bearing_load", tuple(lines), limit, tuple(notes))
 
 
-def _at_centre(sheet: Sheet, P: Term, place: int) -> Iterable[Line]:
+def _at_centre(sheet: CalculationSheet, P: Term, place: int) -> Iterable[EquationLine]:
     """Radial load at the shaft's centre that stands for where the loads act, where that is given."""
     x, y = sheet.duty.asked["output_load.radial_position_mm"].item(), sheet.given("output_load.axial_radius_mm")
     x_c = _centre(sheet)
@@ -77,16 +77,16 @@ def _at_centre(sheet: Sheet, P: Term, place: int) -> Iterable[Line]:
         formula = F_R * (abs(Term(Variable("x"), x, "mm")) / x_c)
     if y.value:
         formula = formula + F_A * (y / x_c)
-    yield Line(_equivalent_radial(sheet, P, place), formula)
+    yield EquationLine(_equivalent_radial(sheet, P, place), formula)
 
 
-def _centre(sheet: Sheet) -> Term | None:
+def _centre(sheet: CalculationSheet) -> Term | None:
     """Distance of the shaft's centre that counts for the gear, None where it is not known."""
     x_c = shaft_centre_mm(sheet.duty, sheet.gears).item()
     return None if math.isnan(x_c) else Term(Variable.of(INPUTS[CENTRE].symbol), x_c, "mm")
 
 
-def _note_on_centre(sheet: Sheet, load: OutputLoad) -> list[Sentence]:
+def _note_on_centre(sheet: CalculationSheet, load: OutputLoad) -> list[Sentence]:
     """Note on where that distance comes from, where a lever acts."""
     if _centre(sheet) is None or radial_at_centre(sheet.duty, sheet.gears) is sheet.duty.phases.radial_N:
         return []
@@ -95,40 +95,40 @@ def _note_on_centre(sheet: Sheet, load: OutputLoad) -> list[Sentence]:
     return [Sentence(text, {"name": sheet.gear.name})]
 
 
-def _equivalent_radial(sheet: Sheet, P: Term, place: int) -> Term:
+def _equivalent_radial(sheet: CalculationSheet, P: Term, place: int) -> Term:
     radial = radial_at_centre(sheet.duty, sheet.gears)
     if radial is sheet.duty.phases.radial_N:
         return sheet.radial.term(P.symbol.index, place)
     return Term(Variable("F", "eq").of_phase(P.symbol.index), radial[0, 0].item(place), "N")
 
 
-def _equivalent_load(sheet: Sheet, model: str, place: int, P: Term) -> Line:
+def _equivalent_load(sheet: CalculationSheet, model: str, place: int, P: Term) -> EquationLine:
     r = _equivalent_radial(sheet, P, place) / known(sheet.rating("dynamic_radial_load_N"))
     a = sheet.axial.term(P.symbol.index, place) / known(sheet.rating("dynamic_axial_load_N"))
-    return Line(P, Largest((r, bearing.RADIAL_FACTOR * r + a)) if model == "iso281" else r + a)
+    return EquationLine(P, Largest((r, bearing.RADIAL_FACTOR * r + a)) if model == "iso281" else r + a)
 
 
 # --- Life -------------------------------------------------------------------------------------------------------------
 
 
-def _mean(sheet: Sheet, load: OutputLoad, loads: PhaseValues, mean: Term, k: Term, f_w: Term) -> Step:
+def _mean(sheet: CalculationSheet, load: OutputLoad, loads: PhaseValues, mean: Term, k: Term, f_w: Term) -> Step:
     """Step of the cycle's equivalent load and of the load k that the required life allows."""
     speed, life = sheet.catalogue.bearing_reference
     damage = over_phases(lambda n, t, P: abs(n) * t * P**3, sheet.speed, sheet.time, loads)
     above, below = Constant(speed, "rpm") * Constant(life, "h"), sheet.n_out_av * _required(sheet, load)
-    lines = Line(mean, Root(damage / sheet.travel, CUBE)), Line(k, Root(above / below, CUBE))
+    lines = EquationLine(mean, Root(damage / sheet.travel, CUBE)), EquationLine(k, Root(above / below, CUBE))
     limit = sheet.compared("output_bearing_life", f_w * mean)
     note = Sentence(N_("ISO 281, ball bearings, exponent 3; the published loads hold for L50 = 20000 h at 100 rpm."))
     return step_of_check("output_bearing_life", lines, limit, (note,))
 
 
-def _required(sheet: Sheet, load: OutputLoad) -> Formula:
+def _required(sheet: CalculationSheet, load: OutputLoad) -> Formula:
     """Required life as L50."""
     life = known(sheet.given("output_load.life_h"))
     return bearing.L50_PER_L10 * life if load.life_basis == "L10" else life
 
 
-def _life(sheet: Sheet, mean: Term, f_w: Term) -> Step:
+def _life(sheet: CalculationSheet, mean: Term, f_w: Term) -> Step:
     title = CANDIDATE["bearing_life_L10_h"].name
     L_50, L_10 = sheet.figure("bearing_life_L50_h"), sheet.figure("bearing_life_L10_h")
     if L_50 is None or L_10 is None:
@@ -137,8 +137,8 @@ def _life(sheet: Sheet, mean: Term, f_w: Term) -> Step:
     speed, life = sheet.catalogue.bearing_reference
     by_speed = Constant(speed, "rpm") / sheet.n_out_av
     lines = (
-        Line(L_50, Constant(life, "h") * by_speed / (f_w * mean) ** 3),
-        Line(L_10, L_50 / bearing.L50_PER_L10),
+        EquationLine(L_50, Constant(life, "h") * by_speed / (f_w * mean) ** 3),
+        EquationLine(L_10, L_50 / bearing.L50_PER_L10),
     )
     note = Sentence(
         N_(

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from hpn.explain.calculation.formula import Constant, Formula, Root, Term, Variable
-from hpn.explain.calculation.sheet import Line, Sheet, known
+from hpn.explain.calculation.sheet import CalculationSheet, EquationLine, known
 from hpn.physics.equations import ROUNDING
 from hpn.physics.shaft_load import PRESSURE_ANGLE_DEG
 from hpn.words.wording import N_, Sentence
@@ -20,7 +20,7 @@ BELT = N_(
 TYPED = N_("Typed loads F_typ are added, since their directions are not known: an upper bound.")
 
 
-def notes_on_shaft(sheet: Sheet) -> list[Sentence]:
+def notes_on_shaft(sheet: CalculationSheet) -> list[Sentence]:
     """Notes on the load of pinion or pulley; none without one."""
     drive, typed = sheet.application.shaft_drive, sheet.duty.typed
     notes = {"rack_and_pinion": [RACK], "belt": [BELT]}.get(drive, [])
@@ -28,7 +28,7 @@ def notes_on_shaft(sheet: Sheet) -> list[Sentence]:
     return [Sentence(note) for note in (*notes, *added)]
 
 
-def of_shaft(sheet: Sheet, index: str, place: int) -> Iterable[Line]:
+def of_shaft(sheet: CalculationSheet, index: str, place: int) -> Iterable[EquationLine]:
     """Tangential force in a phase, and the radial and axial load of pinion or pulley with what is typed."""
     drive = sheet.application.shaft_drive
     if not drive:
@@ -39,20 +39,20 @@ def of_shaft(sheet: Sheet, index: str, place: int) -> Iterable[Line]:
     else:
         own = index, place
     F_t = Term(Variable("F", "t").of_phase(index), forces.item(place), "N")
-    yield Line(F_t, _force(sheet, F_t, index, place))
+    yield EquationLine(F_t, _force(sheet, F_t, index, place))
     radial, axial = (values.term(*own) for values in (sheet.radial, sheet.axial))
     typed_radial, typed_axial = (values[0, 0].item(own[1]) for values in (typed.radial_N, typed.axial_N))
     if drive == "belt":
-        yield Line(radial, _added(known(sheet.given("output_load.belt_tension_factor")) * F_t, typed_radial))
+        yield EquationLine(radial, _added(known(sheet.given("output_load.belt_tension_factor")) * F_t, typed_radial))
         return
     beta = math.radians(known(sheet.given("output_load.rack_helix_deg")).value)
     q = Term(Variable("q"), math.tan(math.radians(PRESSURE_ANGLE_DEG)) / math.cos(beta))
-    yield Line(radial, _added(F_t * Root(Constant(1) + q**2, Constant(2)), typed_radial))
+    yield EquationLine(radial, _added(F_t * Root(Constant(1) + q**2, Constant(2)), typed_radial))
     if beta:
-        yield Line(axial, _added(F_t * Term(Variable("tan β"), math.tan(beta)), typed_axial))
+        yield EquationLine(axial, _added(F_t * Term(Variable("tan β"), math.tan(beta)), typed_axial))
 
 
-def _force(sheet: Sheet, F_t: Term, index: str, place: int) -> Formula:
+def _force(sheet: CalculationSheet, F_t: Term, index: str, place: int) -> Formula:
     """Torque over half the diameter, or where it is larger the force itself."""
     d = Term(Variable("d"), sheet.duty.shaft_diameter_mm.item(), "mm")
     by_torque = Constant(2000) * abs(sheet.peak_torque.term(index, place)) / d

@@ -16,8 +16,8 @@ from hpn.engine.evaluation import CheckStatus
 from hpn.engine.selection import DutyFigures
 from hpn.explain.calculation.formula import (
     Formula,
+    PhaseSum,
     PhaseValues,
-    Series,
     Sum,
     Term,
     Variable,
@@ -31,7 +31,7 @@ from hpn.words.wording import Named, Sentence
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class EquationLine:
     """One equation: its result and its formula; `rounded_down` where the result is a whole number."""
 
     result: Term
@@ -76,7 +76,7 @@ class Step:
     code: str
     title: str
     equation: str | None
-    lines: tuple[Line, ...] = ()
+    lines: tuple[EquationLine, ...] = ()
     comparisons: tuple[Comparison, ...] = ()
     notes: tuple[Sentence, ...] = ()
 
@@ -90,7 +90,7 @@ class Step:
 
 def step_of_check(
     code: str,
-    lines: tuple[Line, ...] = (),
+    lines: tuple[EquationLine, ...] = (),
     comparisons: tuple[Comparison, ...] = (),
     notes: tuple[Sentence, ...] = (),
 ) -> Step:
@@ -110,7 +110,7 @@ def known(term: Term | None) -> Term:
     return term
 
 
-class Sheet:
+class CalculationSheet:
     """Figures for the steps of one gear: the candidate's, the gear's, the duty's and the phases.
 
     What an answer says is taken from it, never computed again.
@@ -199,7 +199,7 @@ class Sheet:
         return self.catalogue.listed([self.gear])
 
     @cached_property
-    def travel(self) -> Series:
+    def travel(self) -> PhaseSum:
         """|n_1| t_1 + … + |n_n| t_n."""
         return over_phases(lambda n, t: abs(n) * t, self.speed, self.time)
 

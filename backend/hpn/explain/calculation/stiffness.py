@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from hpn.explain.calculation.formula import Constant, Formula, Root, Sum, Term, Variable
-from hpn.explain.calculation.sheet import Line, Sheet, Step, known, step_of_check
+from hpn.explain.calculation.sheet import CalculationSheet, EquationLine, Step, known, step_of_check
 from hpn.words.quantities import CANDIDATE
 from hpn.words.wording import N_, Quantity, Sentence
 
@@ -12,16 +12,16 @@ PI = Term(Variable("π"), math.pi)
 ARCMIN = Constant(10800, "arcmin") / PI
 
 
-def frequency_steps(sheet: Sheet) -> Iterable[Step]:
+def frequency_steps(sheet: CalculationSheet) -> Iterable[Step]:
     """Natural frequency and resonance, as far as the gear's figures are published."""
     K_3, J = sheet.rating("torsional_stiffness_Nm_per_rad"), sheet.load_inertia
     if K_3 is None:
         return
     held, free = sheet.figure("natural_frequency_Hz"), sheet.figure("drive_resonance_Hz")
     if held is not None and J is not None:
-        lines = [Line(held, _frequency(K_3 / J))]
+        lines = [EquationLine(held, _frequency(K_3 / J))]
         if free is not None:
-            lines.append(Line(free, _frequency(K_3 * (1 / J + 1 / at_output(sheet)))))
+            lines.append(EquationLine(free, _frequency(K_3 * (1 / J + 1 / at_output(sheet)))))
         note = Sentence(CANDIDATE["natural_frequency_Hz"].caveat)
         yield step_of_check("natural_frequency", tuple(lines), sheet.compared("natural_frequency", held), (note,))
 
@@ -30,13 +30,13 @@ def _frequency(square: Formula) -> Formula:
     return Root(square) / (2 * PI)
 
 
-def at_output(sheet: Sheet) -> Formula:
+def at_output(sheet: CalculationSheet) -> Formula:
     """Inertia of the motor at the output, with the gear's own where it is known."""
     J_m, J_g = known(sheet.given("requirements.motor.inertia_kgm2")), sheet.rating("inertia_kgm2")
     return sheet.i**2 * (J_m if J_g is None else J_m + J_g)
 
 
-def position_steps(sheet: Sheet) -> Iterable[Step]:
+def position_steps(sheet: CalculationSheet) -> Iterable[Step]:
     """Wind-up under T_max, and what adds up to the position error."""
     K_3 = sheet.rating("torsional_stiffness_Nm_per_rad")
     if K_3 is None:
@@ -48,15 +48,15 @@ def position_steps(sheet: Sheet) -> Iterable[Step]:
     parts: list[Formula] = [known(sheet.rating("transmission_accuracy_arcmin")), span]
     if lowest <= 0 <= highest:
         parts.append(known(sheet.rating("backlash_arcmin")))
-    lines = [Line(wind_up, sheet.T_max / K_3 * ARCMIN), Line(error, Sum(tuple(parts)))]
+    lines = [EquationLine(wind_up, sheet.T_max / K_3 * ARCMIN), EquationLine(error, Sum(tuple(parts)))]
     length, radius = sheet.figure("position_error_mm"), sheet.given("requirements.position_radius_mm")
     if length is not None and radius is not None:
-        lines.append(Line(length, error / ARCMIN * radius))
+        lines.append(EquationLine(length, error / ARCMIN * radius))
     notes = (*_on_the_range(sheet), Sentence(CANDIDATE["position_error_arcmin"].caveat))
     yield step_of_check("position_error", tuple(lines), sheet.compared("position_error", error), notes)
 
 
-def _on_the_range(sheet: Sheet) -> Iterable[Sentence]:
+def _on_the_range(sheet: CalculationSheet) -> Iterable[Sentence]:
     """Notes on where T_lo and T_hi come from."""
     duty, motion = sheet.duty, sheet.application.duty_cycle.motion
     both = duty.torque_both_ways.item()

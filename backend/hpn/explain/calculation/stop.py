@@ -9,7 +9,7 @@ import numpy as np
 from hpn.engine.figures import Figures
 from hpn.engine.stops import Stops
 from hpn.explain.calculation.formula import Constant, Formula, Largest, Root, Term, Variable
-from hpn.explain.calculation.sheet import Line, Sheet, Step, known
+from hpn.explain.calculation.sheet import CalculationSheet, EquationLine, Step, known
 from hpn.explain.calculation.stiffness import ARCMIN, PI, at_output
 from hpn.physics.stop import flank_share, settled_torque
 from hpn.words.quantities import INPUTS, QUANTITIES
@@ -32,7 +32,7 @@ LOAD_TORQUES = N_(
 COURSE_BOUNDS = N_("Upper bounds: the load drives all along and losses are left out.")
 
 
-def stop_steps(sheet: Sheet) -> Iterable[Step]:
+def stop_steps(sheet: CalculationSheet) -> Iterable[Step]:
     """The torque of a stop by the brake on the gear, and its course."""
     T_B, T_k = sheet.given("emergency_stop.brake.torque_Nm"), sheet.figure("stop_torque_Nm")
     if T_B is None or T_k is None:
@@ -51,10 +51,10 @@ class _Load:
     T_d: Term
     T_v: Term
     T_o: Term
-    lines: tuple[Line, ...] = ()
+    lines: tuple[EquationLine, ...] = ()
 
     @classmethod
-    def of(cls, sheet: Sheet) -> "_Load":
+    def of(cls, sheet: CalculationSheet) -> "_Load":
         """Load of the motion, else as it is given: T_d and T_v are then T_L."""
         whole = sheet.duty.stop_load
         T_d, T_v, T_o = (np.asarray(x).item() for x in (whole.pulling_Nm, whole.driving_Nm, whole.opposing_Nm))
@@ -78,40 +78,43 @@ class _Load:
             for name, value in (("ratio", shaft.ratio), ("efficiency", shaft.efficiency))
         )
         lines = (
-            Line(pulling, (T["W"] + T["E"]) / i_m),
-            Line(driving, (T["W"] + T["Ev"]) / i_m),
-            Line(opposing, (T["W"] + T["E"] + T["fr"] + T["α"]) / (eta_m * i_m)),
+            EquationLine(pulling, (T["W"] + T["E"]) / i_m),
+            EquationLine(driving, (T["W"] + T["Ev"]) / i_m),
+            EquationLine(opposing, (T["W"] + T["E"] + T["fr"] + T["α"]) / (eta_m * i_m)),
         )
         return cls(pulling, driving, opposing, lines)
 
 
-def _torque(sheet: Sheet, stops: Stops, load: _Load, at_gear: Formula, T_k: Term) -> Step:
+def _torque(sheet: CalculationSheet, stops: Stops, load: _Load, at_gear: Formula, T_k: Term) -> Step:
     """The torque T_k about which, and how far, the gear swings."""
     J, eta = sheet.load_inertia, Term(Variable("η"), np.asarray(stops.brake.efficiency).item())
     T_r = Term(Variable("T", "r"), settled_torque(brake=stops.brake, load=stops.load).item(), "Nm")
     B = Term(Variable("B"), flank_share(brake=stops.brake).item())
     if J is None or math.isnan(stops.brake.motor_at_output_kgm2.item()):
-        lines = [Line(T_r, Largest((at_gear / eta, load.T_d)))]
+        lines = [EquationLine(T_r, Largest((at_gear / eta, load.T_d)))]
         flank: Formula = 1 / eta**2
     else:
         ratio = J.value / stops.brake.motor_at_output_kgm2.item()
         lam = Term(Variable("λ"), ratio)
-        lines = [Line(lam, J / at_output(sheet)), Line(T_r, (lam * at_gear + load.T_d) / (ONE + eta * lam))]
+        lines = [
+            EquationLine(lam, J / at_output(sheet)),
+            EquationLine(T_r, (lam * at_gear + load.T_d) / (ONE + eta * lam)),
+        ]
         flank = (ONE + lam / eta) / (ONE + eta * lam)
     f, notes = sheet.given("emergency_stop.brake.dynamic_factor"), [Sentence(BOUND)]
     if f is not None:
-        lines.append(Line(T_k, f * T_r + (f - 1) * load.T_o))
+        lines.append(EquationLine(T_k, f * T_r + (f - 1) * load.T_o))
         notes = [Sentence(TYPED_FACTOR)]
     else:
         K_3, j = known(sheet.rating("torsional_stiffness_Nm_per_rad")), known(sheet.rating("backlash_arcmin"))
         swing = T_r**2 + 2 * T_r * (load.T_o + K_3 * (j / ARCMIN)) + B * load.T_o**2
-        lines += [Line(B, flank), Line(T_k, T_r + Root(swing))]
+        lines += [EquationLine(B, flank), EquationLine(T_k, T_r + Root(swing))]
     if load.lines:
         notes.append(Sentence(LOAD_TORQUES))
     return Step("stop", BRAKE, None, (*load.lines, *lines), (), tuple(notes))
 
 
-def _course(sheet: Sheet, stops: Stops, J: Term, load: _Load, T_B: Term, T_k: Term) -> Step:
+def _course(sheet: CalculationSheet, stops: Stops, J: Term, load: _Load, T_B: Term, T_k: Term) -> Step:
     """Time, angle and energy that no stop exceeds."""
     given, figure = sheet.given, sheet.figure
     t_r, t_b = known(given("emergency_stop.brake.reaction_time_s")), known(given("emergency_stop.brake.rise_time_s"))
@@ -126,11 +129,11 @@ def _course(sheet: Sheet, stops: Stops, J: Term, load: _Load, T_B: Term, T_k: Te
     drawn = load.T_v * t_d**2 / (2 * inertia)
     turned = omega * t_d + drawn + faster**2 / (2 * a) + j / ARCMIN + (T_k + load.T_o) / K_3
     lines = (
-        Line(t_d, t_r + t_b / 2),
-        Line(faster, omega + load.T_v * t_d / inertia),
-        Line(a, (sheet.i * T_B - load.T_v) / inertia),
-        Line(time, t_d + faster / a + 1 / (4 * known(figure("drive_resonance_Hz")))),
-        Line(angle, turned * DEGREES),
-        Line(known(figure("stop_energy_J")), inertia * omega**2 / 2 + load.T_v * (angle / DEGREES)),
+        EquationLine(t_d, t_r + t_b / 2),
+        EquationLine(faster, omega + load.T_v * t_d / inertia),
+        EquationLine(a, (sheet.i * T_B - load.T_v) / inertia),
+        EquationLine(time, t_d + faster / a + 1 / (4 * known(figure("drive_resonance_Hz")))),
+        EquationLine(angle, turned * DEGREES),
+        EquationLine(known(figure("stop_energy_J")), inertia * omega**2 / 2 + load.T_v * (angle / DEGREES)),
     )
     return Step("stop_course", STOPPING, None, lines, (), (Sentence(COURSE_BOUNDS),))

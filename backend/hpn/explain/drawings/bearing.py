@@ -7,7 +7,7 @@ from math import hypot
 from hpn.application import OutputLoad
 from hpn.catalogue.gear import Gear
 from hpn.explain.drawings.axis import widened
-from hpn.explain.drawings.chart import Line, Mark, Scene
+from hpn.explain.drawings.chart import LimitCurve, Mark, Scene
 from hpn.explain.drawings.layout import Figure, layout, points
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad
 from hpn.explain.drawings.sizes import SizeUse
@@ -66,7 +66,7 @@ def _figure(scene: Scene, gear: Gear | None, picture: BearingPicture, heading: S
 # --- Curves -----------------------------------------------------------------------------------------------------------
 
 
-def _ends(lines: Sequence[Line], reach: Point) -> list[int]:
+def _ends(lines: Sequence[LimitCurve], reach: Point) -> list[int]:
     """Corner of each curve for its name, 0 or -1: that with most room, up to what a name needs on each axis."""
     needed = {0: NAME_HEIGHT * reach[1], -1: NAME_WIDTH * reach[0]}
     taken: dict[int, list[float]] = {0: [], -1: []}
@@ -80,7 +80,7 @@ def _ends(lines: Sequence[Line], reach: Point) -> list[int]:
     return ends
 
 
-def _curve(line: Line, end: int, reader: Reader) -> Figure:
+def _curve(line: LimitCurve, end: int, reader: Reader) -> Figure:
     """Curve with its name at one of its ends."""
     radial, axial = zip(*line.corners, strict=True)
     kind, *states = line.kind.split()

@@ -10,7 +10,7 @@ from math import atan2, degrees, hypot, isfinite
 from xml.etree.ElementTree import Element, SubElement
 
 from hpn.explain.drawings.axis import round_numbers
-from hpn.explain.drawings.placing import Box, Places, Spot, around
+from hpn.explain.drawings.placing import LabelRoom, Rectangle, Spot, around
 from hpn.explain.drawings.svg import LETTER, Point, add, canvas, path, text, width_of
 from hpn.explain.drawings.words import axis_title
 from hpn.words.reader import Reader
@@ -51,7 +51,7 @@ ENDS = (0.12, 0.88, 0.16, 0.84, 0.2, 0.8, 0.08, 0.92, *ALONG)
 
 
 @dataclass(frozen=True, slots=True)
-class Axes:
+class ChartAxes:
     """Quantities to the right and upwards: name (an English msgid) and unit of each.
 
     With `powers` those upwards are powers of ten.
@@ -64,11 +64,11 @@ class Axes:
     powers: bool = False
 
 
-LOADS = Axes(N_("radial load"), "N", N_("axial load"), "N")
+LOADS = ChartAxes(N_("radial load"), "N", N_("axial load"), "N")
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LimitCurve:
     """A limit by its corners (across, up), from one axis to the other, or a curve.
 
     A strong one has its label in its middle and an area below it, others their label at their end; `kind` is what the
@@ -109,10 +109,10 @@ class Scene:
     at infinity is at the end of its axis.
     """
 
-    lines: Sequence[Line]
+    lines: Sequence[LimitCurve]
     marks: Sequence[Mark]
     ray: tuple[Point, Point] | None = None
-    axes: Axes = LOADS
+    axes: ChartAxes = LOADS
     beyond: Sequence[str] = ()
     levers: Sequence[tuple[Point, Point]] = ()
 
@@ -121,22 +121,22 @@ class Scene:
 class Frame:
     """Where points stand in a drawing of a size, whose axes end at `across` and `up`."""
 
-    axes: Axes
+    axes: ChartAxes
     size: Point
     left: float
     across: float
     up: float
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Rectangle:
         """The part of the drawing between the axes."""
-        return Box(self.left, TOP, self.size[0] - RIGHT, self.size[1] - BOTTOM)
+        return Rectangle(self.left, TOP, self.size[0] - RIGHT, self.size[1] - BOTTOM)
 
     @property
-    def room(self) -> Box:
+    def room(self) -> Rectangle:
         """The part that discs and names may use: a little beyond the axes, up to their numbers."""
         box = self.box
-        return Box(box.left - MARGIN, box.top, box.right + MARGIN, box.bottom + MARGIN)
+        return Rectangle(box.left - MARGIN, box.top, box.right + MARGIN, box.bottom + MARGIN)
 
     def at(self, point: Point) -> Point:
         """Where a point stands."""
@@ -153,7 +153,7 @@ def chart(scene: Scene, reader: Reader, size: Point = SMALL) -> Element:
     frame = _frame(points, [corner for corner, _ in bold], axes, size, reader)
     drawing = canvas(KINDS[size], size[0], size[1] + ROW * len(scene.beyond))
     still = add(drawing, "g", "still", aria_hidden="true")
-    places = Places(frame.room)
+    places = LabelRoom(frame.room)
     for line in lines:
         corners = [frame.at(corner) for corner in line.corners]
         if line.strong:
@@ -174,7 +174,7 @@ def chart(scene: Scene, reader: Reader, size: Point = SMALL) -> Element:
     return drawing
 
 
-def _bold(lines: Sequence[Line]) -> Iterator[tuple[Point, str]]:
+def _bold(lines: Sequence[LimitCurve]) -> Iterator[tuple[Point, str]]:
     """Ends of the lines whose values stand on the axes in bold, the governing first, with the kind of their number."""
     for kind, of_kind in (("tick own governing", True), ("tick own", False)):
         for line in lines:
@@ -191,7 +191,7 @@ def _within(frame: Frame, point: Point) -> Point:
 # --- Axes -------------------------------------------------------------------------------------------------------------
 
 
-def _frame(points: Sequence[Point], bold: Sequence[Point], axes: Axes, size: Point, reader: Reader) -> Frame:
+def _frame(points: Sequence[Point], bold: Sequence[Point], axes: ChartAxes, size: Point, reader: Reader) -> Frame:
     across, up = (ROOM * max(filter(isfinite, values)) or 1.0 for values in zip(*points, strict=True))
     labels = [label for _, label in _upwards(up, axes, reader)]
     labels += [reader.figure(corner[1], axes.up_unit) for corner in bold]
@@ -204,7 +204,7 @@ def _numbers(largest: float, unit: str, spaces: int, reader: Reader) -> list[tup
     return [(largest * number / end, reader.tick(number)) for number in round_numbers(0.0, end, spaces)] or [(0.0, "0")]
 
 
-def _upwards(largest: float, axes: Axes, reader: Reader) -> list[tuple[float, str]]:
+def _upwards(largest: float, axes: ChartAxes, reader: Reader) -> list[tuple[float, str]]:
     """Round numbers of the axis upwards."""
     numbers = _numbers(largest, axes.up_unit, MOST_SPACES, reader)
     return [(number, reader.power_of_ten(round(number))) for number, _ in numbers] if axes.powers else numbers
@@ -261,11 +261,11 @@ def _spread(frame: Frame, reader: Reader) -> list[tuple[float, str]]:
 # --- Points -----------------------------------------------------------------------------------------------------------
 
 
-def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places) -> None:
+def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: LabelRoom) -> None:
     """Dots first, so that no disc hides one that is not its own; then the discs, the most used load first, P_m last."""
     named = sorted((place for place, mark in enumerate(marks) if mark.label), key=lambda place: -marks[place].used)
-    dots = [Box.around(frame.at(mark.place), 2 * DOT, 2 * DOT) for mark in marks]
-    centred: list[Box] = []
+    dots = [Rectangle.around(frame.at(mark.place), 2 * DOT, 2 * DOT) for mark in marks]
+    centred: list[Rectangle] = []
     leaders = add(drawing, "g", "still", aria_hidden="true")
     groups = [_group(drawing, mark) for mark in marks]
     circles = [
@@ -289,7 +289,7 @@ def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: Places
     places.taken += dots
 
 
-def _apart(one: Box, other: Box) -> float:
+def _apart(one: Rectangle, other: Rectangle) -> float:
     return max(abs(one.left - other.left), abs(one.top - other.top))
 
 
@@ -313,7 +313,7 @@ def _excess(label: str) -> float:
     return max(width_of(label) - width_of("00"), 0.0)
 
 
-def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Box) -> None:
+def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Rectangle) -> None:
     (x, y), half = spot.centre, RADIUS + _excess(mark.label) / 2
     if (x, y) != dot:
         add(leaders, "path", "leader", d=path([dot, (x, y)]))
@@ -330,7 +330,7 @@ def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Box) -
 # --- Names of the lines -----------------------------------------------------------------------------------------------
 
 
-def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Places) -> None:
+def _labels(drawing: Element, frame: Frame, lines: Sequence[LimitCurve], places: LabelRoom) -> None:
     """Each line has its name along it, where the fewest lines cross: a strong one in its middle, others at an end."""
     group = add(drawing, "g", "still", aria_hidden="true")
     for line in sorted((line for line in lines if line.label), key=lambda line: not line.strong):
@@ -342,7 +342,7 @@ def _labels(drawing: Element, frame: Frame, lines: Sequence[Line], places: Place
             text(group, f"name {line.kind}", (0.0, 4.5), line.label, "middle").set("transform", at)
 
 
-def _beside(corners: Sequence[Point], share: float, side: int, line: Line, turned: bool) -> Spot:
+def _beside(corners: Sequence[Point], share: float, side: int, line: LimitCurve, turned: bool) -> Spot:
     """Place of a line's name at a share of the way along it, turned with it above or below, or level beside it."""
     (x, y), (across, down) = _along(corners, share)
     length, half = hypot(across, down) or 1.0, width_of(line.label) / 2
@@ -353,7 +353,7 @@ def _beside(corners: Sequence[Point], share: float, side: int, line: Line, turne
         at, (across, down) = (x + side * (half + ASIDE / 2), y), (1.0, 0.0)
     count = max(round(2 * half / LETTER), 1)
     steps = [half * (2 * k + 1 - count) / count for k in range(count)]
-    boxes = [Box.around((at[0] + step * across, at[1] + step * down), LETTER, LETTER) for step in steps]
+    boxes = [Rectangle.around((at[0] + step * across, at[1] + step * down), LETTER, LETTER) for step in steps]
     return Spot(at, degrees(atan2(down, across)), boxes)
 
 

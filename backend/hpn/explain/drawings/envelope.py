@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
 from hpn.engine.envelopes import EnvelopeCurve, EnvelopeQuery, envelope_curve, has_envelope, life_envelopes
-from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, Line, Mark, Scene, chart
+from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, LimitCurve, Mark, Scene, chart
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad, beyond_limit
 from hpn.explain.drawings.sizes import SizeUse
 from hpn.explain.drawings.svg import Point
@@ -34,7 +34,7 @@ def envelope_scene(
             continue
         if kind:
             told, strong = reader.told(named.name), named.kind == "own"
-            lines.append(Line(kind, label, named.corners, strong, told, named.curve.load_coefficient))
+            lines.append(LimitCurve(kind, label, named.corners, strong, told, named.curve.load_coefficient))
     if not picture.loads:
         return Scene(lines, [])
     marks, worst, ray = _marks(picture, governing, reader, judged=True), picture.worst, None
@@ -55,7 +55,7 @@ def sizes_scene(
             corners = _corners(use.curve)
             own = use.gear.size == picture.gear.size
             kind = "limit" if own else f"size s{place % 4}"
-            lines.append(Line(kind, use.gear.size, corners, own, use.gear.name, use.curve.load_coefficient))
+            lines.append(LimitCurve(kind, use.gear.size, corners, own, use.gear.name, use.curve.load_coefficient))
     return Scene(lines, _marks(picture, governing, reader, judged=False), levers=_levers(picture))
 
 
@@ -87,14 +87,14 @@ def gear_envelope(
     own = next(curve for curve in curves if curve.load_coefficient == query.load_coefficient)
     single = envelope_curve(catalogue, gear, query.model, 1.0)
     f_w = coefficient_name(own.load_coefficient, reader)
-    lines = [Line("limit", f"{reader.text(N_('constant load'))}, {f_w}", _corners(own), strong=True)]
+    lines = [LimitCurve("limit", f"{reader.text(N_('constant load'))}, {f_w}", _corners(own), strong=True)]
     lines += [
-        Line("coefficient", coefficient_name(curve.load_coefficient, reader), _corners(curve))
+        LimitCurve("coefficient", coefficient_name(curve.load_coefficient, reader), _corners(curve))
         for curve in curves
         if curve is not own and _corners(curve) != _corners(single)
     ]
     if _corners(single) != _corners(own):
-        lines.append(Line("single", reader.text(N_("single load")), _corners(single)))
+        lines.append(LimitCurve("single", reader.text(N_("single load")), _corners(single)))
     return GearEnvelope(curves, query.model == "digitised", chart(Scene(lines, []), reader))
 
 

@@ -16,7 +16,7 @@ DIRECTIONS = tuple((cos(turn * pi / 6), -sin(turn * pi / 6)) for turn in (1, 2, 
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class Rectangle:
     """A rectangle with its sides along the axes, y downwards."""
 
     left: float
@@ -25,7 +25,7 @@ class Box:
     bottom: float
 
     @classmethod
-    def around(cls, centre: Point, width: float, height: float) -> "Box":
+    def around(cls, centre: Point, width: float, height: float) -> "Rectangle":
         """Box of a size about its centre."""
         x, y = centre
         return cls(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
@@ -35,12 +35,12 @@ class Box:
         """Its middle."""
         return (self.left + self.right) / 2, (self.top + self.bottom) / 2
 
-    def meets(self, other: "Box") -> bool:
+    def meets(self, other: "Rectangle") -> bool:
         """True for boxes with more than an edge in common."""
         across = self.left < other.right and other.left < self.right
         return across and self.top < other.bottom and other.top < self.bottom
 
-    def within(self, other: "Box") -> bool:
+    def within(self, other: "Rectangle") -> bool:
         """True for a box that is wholly inside the other."""
         across = other.left <= self.left and self.right <= other.right
         return across and other.top <= self.top and self.bottom <= other.bottom
@@ -67,22 +67,22 @@ class Spot:
 
     at: Point
     turn: float
-    boxes: list[Box]
+    boxes: list[Rectangle]
 
 
-class Places:
+class LabelRoom:
     """Room inside a frame: what is taken, and the lines that a label had better not lie on."""
 
-    def __init__(self, frame: Box) -> None:
+    def __init__(self, frame: Rectangle) -> None:
         self.frame = frame
-        self.taken: list[Box] = []
+        self.taken: list[Rectangle] = []
         self.lines: list[list[Point]] = []
 
-    def is_free(self, box: Box) -> bool:
+    def is_free(self, box: Rectangle) -> bool:
         """True for a box that lies inside the frame and over nothing that is taken."""
         return box.within(self.frame) and all(not box.meets(other) for other in self.taken)
 
-    def first(self, candidates: Iterable[Box]) -> Box | None:
+    def first(self, candidates: Iterable[Rectangle]) -> Rectangle | None:
         """Take the first free one of some boxes; None where there is none."""
         return self._take(next(filter(self.is_free, candidates), None))
 
@@ -100,20 +100,20 @@ class Places:
         self.taken += best.boxes if best else []
         return best
 
-    def _take(self, box: Box | None) -> Box | None:
+    def _take(self, box: Rectangle | None) -> Rectangle | None:
         if box is not None:
             self.taken.append(box)
         return box
 
-    def _crossings(self, box: Box) -> int:
-        letters = Box.around(box.centre, LETTERS * (box.right - box.left), LETTERS * (box.bottom - box.top))
+    def _crossings(self, box: Rectangle) -> int:
+        letters = Rectangle.around(box.centre, LETTERS * (box.right - box.left), LETTERS * (box.bottom - box.top))
         return sum(letters.is_crossed(start, end) for line in self.lines for start, end in pairwise(line))
 
 
-def around(point: Point, width: float, height: float) -> Iterable[Box]:
+def around(point: Point, width: float, height: float) -> Iterable[Rectangle]:
     """Boxes of a size at a point and about it, the nearest first."""
-    yield Box.around(point, width, height)
+    yield Rectangle.around(point, width, height)
     for distance in DISTANCES:
         for across, down in DIRECTIONS:
             reach = distance + abs(across) * (width - height) / 2
-            yield Box.around((point[0] + reach * across, point[1] + distance * down), width, height)
+            yield Rectangle.around((point[0] + reach * across, point[1] + distance * down), width, height)

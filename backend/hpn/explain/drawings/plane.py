@@ -10,7 +10,7 @@ import numpy as np
 from hpn.account.readings import figure_symbol
 from hpn.application import Motor
 from hpn.engine.motor_torques import efficiencies
-from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, Axes, Line, Mark, Scene, chart
+from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, ChartAxes, LimitCurve, Mark, Scene, chart
 from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
@@ -24,8 +24,8 @@ from hpn.words.reader import DEFAULT, Reader
 from hpn.words.titles import numbered
 from hpn.words.wording import N_, Named, Quantity, Sentence, Value
 
-OUTPUT = Axes(N_("output speed"), "rpm", N_("output torque"), "Nm")
-MOTOR = Axes(N_("motor speed"), "rpm", N_("motor torque"), "Nm")
+OUTPUT = ChartAxes(N_("output speed"), "rpm", N_("output torque"), "Nm")
+MOTOR = ChartAxes(N_("motor speed"), "rpm", N_("motor torque"), "Nm")
 
 MOST_MARKS = 200
 """Phases that are drawn, those nearest to their limit."""
@@ -180,13 +180,13 @@ def _plane(scene: Scene, limits: Sequence[_Limits], words: list[Sentence], subje
     return Plane(chart(scene, reader, PLANE), demands, words)
 
 
-def _drive_limit(subject: Subject, scene: Scene, reader: Reader) -> Iterable[Line]:
+def _drive_limit(subject: Subject, scene: Scene, reader: Reader) -> Iterable[LimitCurve]:
     """Torque limit to set in the drive, right across, where it is not far beyond the rest."""
     limit = subject.of_gear.motor_torque_limit_Nm.item()
     most = max((T for line in scene.lines for _, T in line.corners if not isinf(T)), default=0.0)
     most = max(most, *(mark.place[1] for mark in scene.marks))
     if limit <= OUT_OF_SCALE * most:
-        yield Line("drive", reader.text(N_("drive limit")), [(0.0, limit), (inf, limit)])
+        yield LimitCurve("drive", reader.text(N_("drive limit")), [(0.0, limit), (inf, limit)])
 
 
 def _of_motor(motor: Motor, name: str) -> _Limit:
@@ -239,7 +239,7 @@ def _scene(
     cycle: _Cycle,
     limits: Sequence[_Limits],
     mean: str,
-    axes: Axes,
+    axes: ChartAxes,
     subject: Subject,
     reader: Reader,
     governing: Sequence[int],
@@ -247,7 +247,7 @@ def _scene(
     u = subject.application.requirements.utilisation
     most = max(cycle.peak_speed_rpm), max(cycle.peak_torque_Nm)
     lines = [line for one in limits for line in _lines(one, u, most)]
-    lines += [Line("curve", "", points) for points in dict.fromkeys(map(tuple, cycle.curves.values()))]
+    lines += [LimitCurve("curve", "", points) for points in dict.fromkeys(map(tuple, cycle.curves.values()))]
     if not cycle.curves:
         lines += _spans(cycle)
     marks = _phases(cycle, limits[0], u, governing, reader)
@@ -261,15 +261,15 @@ def _scene(
     return Scene(lines, marks, None, axes, list(_beyond(limits, u, most, reader)))
 
 
-def _lines(limits: _Limits, u: float, most: Point) -> Iterable[Line]:
+def _lines(limits: _Limits, u: float, most: Point) -> Iterable[LimitCurve]:
     """The rectangle of a torque and a speed; where one of them is not drawn, the other goes right across."""
     n, T = (_drawn_at(limit, u, value) for limit, value in zip((limits.speed, limits.torque), most, strict=True))
     if limits.kind == "limit" and not (isinf(n) and isinf(T)):
-        yield Line("region", "", [(0.0, T), (n, T), (n, 0.0)], strong=True)
+        yield LimitCurve("region", "", [(0.0, T), (n, T), (n, 0.0)], strong=True)
     if not isinf(T):
-        yield Line(limits.kind, _name(limits.torque, u), [(0.0, T), (n, T)])
+        yield LimitCurve(limits.kind, _name(limits.torque, u), [(0.0, T), (n, T)])
     if not isinf(n):
-        yield Line(limits.kind, _name(limits.speed, u), [(n, T), (n, 0.0)])
+        yield LimitCurve(limits.kind, _name(limits.speed, u), [(n, T), (n, 0.0)])
 
 
 def _drawn_at(limit: _Limit, u: float, most: float) -> float:
@@ -294,11 +294,11 @@ def _beyond(limits: Sequence[_Limits], u: float, most: Point, reader: Reader) ->
             yield "\N{EM SPACE}".join(names)
 
 
-def _spans(cycle: _Cycle) -> Iterable[Line]:
+def _spans(cycle: _Cycle) -> Iterable[LimitCurve]:
     """From the mean of each phase that varies to its peak."""
     means, peaks = ((cycle.speed_rpm, cycle.torque_Nm), (cycle.peak_speed_rpm, cycle.peak_torque_Nm))
     ends = zip(*(map(tuple, np.stack(points, axis=1)[:MOST_MARKS].tolist()) for points in (means, peaks)), strict=True)
-    return [Line("span", "", [mean, peak]) for mean, peak in dict.fromkeys(ends) if mean != peak]
+    return [LimitCurve("span", "", [mean, peak]) for mean, peak in dict.fromkeys(ends) if mean != peak]
 
 
 def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], reader: Reader) -> list[Mark]:

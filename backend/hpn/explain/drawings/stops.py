@@ -2,7 +2,7 @@
 
 from math import inf, log10
 
-from hpn.explain.drawings.chart import Axes, Line, Mark, Scene
+from hpn.explain.drawings.chart import ChartAxes, LimitCurve, Mark, Scene
 from hpn.explain.drawings.subject import Subject
 from hpn.explain.drawings.words import share
 from hpn.physics import equations
@@ -13,7 +13,7 @@ from hpn.words.wording import N_, Quantity, Sentence, Value
 TOP = 8.0
 """Power of ten at which the stop of a user stands whose number is not limited."""
 
-AXES = Axes(N_("emergency-stop torque"), "Nm", N_("number of stops"), "", powers=True)
+AXES = ChartAxes(N_("emergency-stop torque"), "Nm", N_("number of stops"), "", powers=True)
 
 
 def stop_scene(subject: Subject, reader: Reader = DEFAULT) -> Scene | None:
@@ -28,10 +28,10 @@ def stop_scene(subject: Subject, reader: Reader = DEFAULT) -> Scene | None:
     one_stop = equations.emergency_stop_torque_for(momentary_peak_count=1, repeated_peak_torque_Nm=T_R).item()
     start, end = ((torque, _power(torque, T_R)) for torque in (T_R, min(max(T_M, T_R), one_stop)))
     lines = [
-        Line("region", "", [(0.0, inf), (T_R, inf), start, end, (end[0], 0.0)], strong=True),
-        Line("limit", CANDIDATE["momentary_peak_count"].symbol, [start, end]),
-        Line("mean", GEAR["repeated_peak_torque_Nm"].symbol, [(T_R, inf), start]),
-        Line("mean", GEAR["momentary_peak_torque_Nm"].symbol, [end, (end[0], 0.0)]),
+        LimitCurve("region", "", [(0.0, inf), (T_R, inf), start, end, (end[0], 0.0)], strong=True),
+        LimitCurve("limit", CANDIDATE["momentary_peak_count"].symbol, [start, end]),
+        LimitCurve("mean", GEAR["repeated_peak_torque_Nm"].symbol, [(T_R, inf), start]),
+        LimitCurve("mean", GEAR["momentary_peak_torque_Nm"].symbol, [end, (end[0], 0.0)]),
     ]
     return Scene(lines, _stop(subject, T_M, reader), None, AXES)
 

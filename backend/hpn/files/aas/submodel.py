@@ -19,7 +19,7 @@ from basyx.aas.adapter import aasx
 from pyecma376_2.core_properties import OPCCoreProperties
 
 from hpn.account.account import UNLIMITED, CheckLine
-from hpn.account.lines import Line, Table, Value
+from hpn.account.lines import Line, LineTable, Value
 from hpn.account.published import line_of
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
@@ -255,7 +255,7 @@ def _cycle(export: Export) -> Iterable[model.SubmodelElementCollection]:
         yield model.SubmodelElementCollection("Phases", [*_numbered("Phase", phases)])
 
 
-def _numbered(name: str, table: Table) -> Iterable[model.SubmodelElement]:
+def _numbered(name: str, table: LineTable) -> Iterable[model.SubmodelElement]:
     """How many rows there are, and each of them unless they are very many."""
     yield model.Property("Count", int, len(table))
     if len(table) <= MOST_ITEMS:

@@ -11,7 +11,7 @@ from hpn.account.readings import life_of
 from hpn.catalogue import Catalogue
 from hpn.documents.differences import DifferentAnswer, DifferentAxis, DifferentInput, DocumentDifferences, differences
 from hpn.documents.revision import Frozen, FrozenAxis
-from hpn.files.export import Heading
+from hpn.files.export import ExportTitle
 from hpn.files.machine.inputs import line_of, path_of
 from hpn.files.machine.words import STATUS, bound_of, check_of
 from hpn.words.quantities import CANDIDATE, DUTY, GEAR
@@ -46,7 +46,7 @@ class DifferencesExport:
     documents: tuple[Frozen, Frozen]
     catalogues: tuple[Catalogue | None, Catalogue | None]
     link: str
-    heading: Heading = field(default_factory=Heading)
+    heading: ExportTitle = field(default_factory=ExportTitle)
     created: datetime | None = None
     made: datetime | None = None
 

@@ -17,7 +17,7 @@ from hpn.documents.revision import Frozen, FrozenAxis
 from hpn.documents.summary import Summary, order_of, summary_of
 from hpn.engine.batch import judge_batch
 from hpn.engine.selection import Judged, Selection
-from hpn.files.export import Export, Heading
+from hpn.files.export import Export, ExportTitle
 from hpn.words.wording import N_, Sentence
 
 MOST_PAGES, MOST_FULL = 500, 100
@@ -46,7 +46,7 @@ class MachineExport:
     document: Frozen
     catalogue: Catalogue
     link: str
-    heading: Heading = field(default_factory=Heading)
+    heading: ExportTitle = field(default_factory=ExportTitle)
     created: datetime | None = None
     made: datetime | None = None
     before: tuple[str, Frozen] | None = None
@@ -142,7 +142,9 @@ def _application(axis: FrozenAxis) -> Application | None:
 
 
 def _export(export: MachineExport, axis: FrozenAxis, application: Application, selection: Selection) -> Export:
-    heading = Heading(axis.name or "", export.heading.reference, "", export.heading.revision, axis.ordering_code or "")
+    heading = ExportTitle(
+        axis.name or "", export.heading.reference, "", export.heading.revision, axis.ordering_code or ""
+    )
     return Export(
         application=application,
         selection=selection,

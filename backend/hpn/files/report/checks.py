@@ -3,7 +3,7 @@
 from typing import Any
 
 from hpn.account.account import Account, CheckLine
-from hpn.account.readings import Reading
+from hpn.account.readings import CheckReading
 from hpn.engine.checks import CHECKS
 from hpn.explain.calculation import Comparison, Step, calculation_of
 from hpn.explain.calculation.mathml import addition, compared, in_symbols, result, substituted
@@ -129,7 +129,7 @@ def bar(utilisation: float | None, bound: float, status: str, reader: Reader) ->
 # --- Demand and limit in words ----------------------------------------------------------------------------------------
 
 
-def bounds(read: Reading, reader: Reader) -> str:
+def bounds(read: CheckReading, reader: Reader) -> str:
     """Limit of a check, and the share of it that the user's own u leaves."""
     if read.has_unlimited_limit:
         return reader.text(N_("unlimited"))
@@ -137,7 +137,7 @@ def bounds(read: Reading, reader: Reader) -> str:
     return measured(read.limit, read.unit, reader, read.demand) + part
 
 
-def demand(read: Reading, reader: Reader) -> str:
+def demand(read: CheckReading, reader: Reader) -> str:
     """Value that a check tests."""
     if read.has_unlimited_demand:
         return reader.text(N_("unlimited"))

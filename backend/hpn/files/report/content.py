@@ -10,7 +10,7 @@ import segno
 
 from hpn.account.inputs import MOTION_TITLE, MOVES_TITLE, PHASES_TITLE
 from hpn.engine.notices import on_motor_torques
-from hpn.files.export import Export, Heading
+from hpn.files.export import Export, ExportTitle
 from hpn.files.report import plots, tables
 from hpn.files.report.checks import bases, checks
 from hpn.files.report.listing import listing
@@ -91,7 +91,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
     }
 
 
-def frame(heading: Heading, reader: Reader) -> dict[str, Any]:
+def frame(heading: ExportTitle, reader: Reader) -> dict[str, Any]:
     """Language, paper, labels and author of a report."""
     labels = {key: reader.text(label) for key, label in LABELS.items()}
     return {"lang": reader.language, "paper": paper(reader), "labels": labels, "author": heading.author.strip()}
@@ -147,7 +147,7 @@ def _head(export: Export, reader: Reader) -> str:
     return running_head(export.heading, export.selection.engine_version, catalogue_version(export, reader), reader)
 
 
-def running_head(heading: Heading, engine: str, catalogue: str, reader: Reader) -> str:
+def running_head(heading: ExportTitle, engine: str, catalogue: str, reader: Reader) -> str:
     """The same by the versions themselves."""
     text = reader.text
     revision = f"{text(N_('Revision'))} {heading.revision.strip()}" if heading.revision.strip() else ""
@@ -156,7 +156,9 @@ def running_head(heading: Heading, engine: str, catalogue: str, reader: Reader) 
     return " · ".join(filter(None, (shortened(own, LONGEST_HEAD), versions)))
 
 
-def block(heading: Heading, reader: Reader, created: datetime | None, made: datetime | None) -> dict[str, list[str]]:
+def block(
+    heading: ExportTitle, reader: Reader, created: datetime | None, made: datetime | None
+) -> dict[str, list[str]]:
     """Fields of the title block: label and text; one that nobody filled in has a dash."""
     dated = reader.date(created) if created else reader.day(made) if made else ""
     fields = {

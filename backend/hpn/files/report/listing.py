@@ -5,7 +5,7 @@ A table of 10,000 phases would take typst 700 MB, a cell of ten lines a quarter 
 
 from typing import Any
 
-from hpn.account.lines import Column, Table
+from hpn.account.lines import LineTable, QuantityColumn
 from hpn.files.report.tables import MOST_PHASES
 from hpn.words.reader import Reader
 
@@ -16,7 +16,7 @@ PAGE, GAP = 136, 6
 """Characters across a page, and between its columns."""
 
 
-def listing(table: Table | None, reader: Reader) -> dict[str, Any] | None:
+def listing(table: LineTable | None, reader: Reader) -> dict[str, Any] | None:
     """Each phase or move of a table that the first page only summarises; None where that page has them all."""
     if table is None or len(table) <= MOST_PHASES:
         return None
@@ -24,7 +24,7 @@ def listing(table: Table | None, reader: Reader) -> dict[str, Any] | None:
     return laid_out([*labels, *([_head(column, reader), *column.numbers(reader)] for column in table.columns)])
 
 
-def _head(column: Column, reader: Reader) -> str:
+def _head(column: QuantityColumn, reader: Reader) -> str:
     line, unit = column.head, reader.unit(column.head.unit)
     symbol = line.named.symbol or line.label(reader)
     return f"{symbol} [{unit}]" if unit else symbol

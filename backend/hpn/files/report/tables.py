@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from hpn.account.account import Account
-from hpn.account.lines import Column, Line, Table, known
+from hpn.account.lines import Line, LineTable, QuantityColumn, known
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula, sentence
 from hpn.words.wording import N_, Sentence
@@ -57,7 +57,7 @@ def motion(account: Account, reader: Reader) -> dict[str, Any] | None:
     return {"mechanism": lines(account.mechanism, reader), "moves": moves | {"words": 2}}
 
 
-def _table(table: Table, reader: Reader, beyond: str = "") -> dict[str, Any]:
+def _table(table: LineTable, reader: Reader, beyond: str = "") -> dict[str, Any]:
     """Heads and cells of a table, the labels of its rows in front; of a long one a note in place of the rows."""
     is_long = len(table) > MOST_PHASES
     cells = [] if is_long else [*table.labels.values(), *(column.numbers(reader) for column in table.columns)]
@@ -69,12 +69,12 @@ def _table(table: Table, reader: Reader, beyond: str = "") -> dict[str, Any]:
     }
 
 
-def _head(column: Column, reader: Reader) -> list[Any]:
+def _head(column: QuantityColumn, reader: Reader) -> list[Any]:
     line = column.head
     return [formula(line.named.symbol), reader.unit(line.unit) if line.named.symbol else line.label(reader)]
 
 
-def _summary(table: Table, reader: Reader) -> list[tuple[str, list[str]]]:
+def _summary(table: LineTable, reader: Reader) -> list[tuple[str, list[str]]]:
     """Least and largest value of each column, and the sum of the durations."""
     found: list[tuple[str, list[str]]] = []
     given = [(c.head, [value for value in c.values if isinstance(value, float | int)]) for c in table.columns]

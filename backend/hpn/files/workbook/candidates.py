@@ -1,7 +1,7 @@
 """The sheet of all candidates, best first: verdict and utilisations, then computed and published figures."""
 
 from hpn.account.account import Account
-from hpn.files.workbook.sheet import VERDICT_STYLES, Sheet
+from hpn.files.workbook.sheet import VERDICT_STYLES, SelectionSheet
 from hpn.words.terms import VERDICTS
 from hpn.words.wording import N_
 
@@ -13,7 +13,7 @@ WIDTH, CHECK_WIDTH, MOST_ACROSS = 12.0, 10.0, 17
 """Widths of columns in characters, and the number of checks that a page across has room for."""
 
 
-def write_candidates(sheet: Sheet) -> None:
+def write_candidates(sheet: SelectionSheet) -> None:
     """Write the sheet; its first columns, up to the checks, are printed."""
     export, text = sheet.export, sheet.reader.text
     definitions = export.selection.check_definitions
@@ -38,7 +38,7 @@ def write_candidates(sheet: Sheet) -> None:
     sheet.page(widths, across=True, pages=1 + (len(definitions) > MOST_ACROSS), columns=checks)
 
 
-def _write_candidate(sheet: Sheet, account: Account, checks: list[str], figures: list[str]) -> None:
+def _write_candidate(sheet: SelectionSheet, account: Account, checks: list[str], figures: list[str]) -> None:
     candidate = account.candidate
     sheet.put(0, candidate.designation)
     sheet.put(1, sheet.reader.text(VERDICTS[candidate.status]), VERDICT_STYLES[candidate.status])

@@ -6,7 +6,7 @@ from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 
 from hpn.account.lines import Line
 from hpn.account.published import line_of
-from hpn.files.workbook.sheet import Cell, Sheet
+from hpn.files.workbook.sheet import Cell, SelectionSheet
 from hpn.words.quantities import CANDIDATE, INPUTS
 from hpn.words.reader import Reader
 from hpn.words.titles import row_label
@@ -58,7 +58,7 @@ COMPARED = {
 """Load limits of these equations, by check: the cells of demand and limit."""
 
 
-def write_equations(sheet: Sheet) -> None:
+def write_equations(sheet: SelectionSheet) -> None:
     """Write the sheet of a gear whose figures are known; only phases, pause and T_k are open."""
     sheet.reader = Reader(sheet.reader.language, digits=sheet.reader.digits)  # the handbook's units
     sheet.put(0, f"{sheet.reader.text(N_('Equations'))}: {sheet.export.candidate.designation}", "title")
@@ -75,7 +75,7 @@ def write_equations(sheet: Sheet) -> None:
     sheet.page(WIDTHS)
 
 
-def _write_figures(sheet: Sheet) -> dict[str, str]:
+def _write_figures(sheet: SelectionSheet) -> dict[str, str]:
     """Published figures of the gear and the series, and the names of their cells."""
     account, figures = sheet.export.account, sheet.export.figures
     assert account.gear is not None and figures is not None
@@ -95,7 +95,7 @@ def _cell(row: int, column: int) -> str:
     return str(xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True))
 
 
-def _cells_of_inputs(sheet: Sheet, row: int) -> dict[str, str]:
+def _cells_of_inputs(sheet: SelectionSheet, row: int) -> dict[str, str]:
     """Cells of pause and T_k, and blocks of the phases, below a row."""
     first, count = row + 7, len(sheet.export.application.duty_cycle.load_phases)
     blocks = {
@@ -104,7 +104,7 @@ def _cells_of_inputs(sheet: Sheet, row: int) -> dict[str, str]:
     return blocks | {"t_p": _cell(row + 2, 2), "T_k": _cell(row + 3, 2)}
 
 
-def _write_formulas(sheet: Sheet, cells: dict[str, str]) -> None:
+def _write_formulas(sheet: SelectionSheet, cells: dict[str, str]) -> None:
     """Write the equations, each with its saved value; their cells join the others."""
     sheet.heads(N_("Equations"))
     account = sheet.export.account
@@ -124,7 +124,7 @@ def _write_formulas(sheet: Sheet, cells: dict[str, str]) -> None:
         sheet.row += 1
 
 
-def _write_limits(sheet: Sheet, cells: Mapping[str, str]) -> None:
+def _write_limits(sheet: SelectionSheet, cells: Mapping[str, str]) -> None:
     """Write the load limits of these equations: demand over limit, and the verdict by u."""
     text, definitions = sheet.reader.text, sheet.export.selection.check_definitions
     heads = (N_("Check"), N_("Demand"), N_("Limit"), N_("Unit"), N_("Utilisation"), N_("Verdict"), N_("Equation"))
@@ -153,7 +153,7 @@ def _write_limits(sheet: Sheet, cells: Mapping[str, str]) -> None:
 RATED_FIELD = {name: field for field, name in RATED.items()}
 
 
-def _write_inputs(sheet: Sheet) -> None:
+def _write_inputs(sheet: SelectionSheet) -> None:
     """Write pause, T_k and the phases, the cells that may be changed."""
     application, candidate = sheet.export.application, sheet.export.candidate
     sheet.heads(N_("Inputs"))

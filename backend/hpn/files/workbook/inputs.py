@@ -1,13 +1,13 @@
 """The sheet of all inputs that are given: loads, requirements, motion, and below them the duty cycle."""
 
 from hpn.account.inputs import MOTION_TITLE, MOVES_TITLE
-from hpn.files.workbook.sheet import Sheet
+from hpn.files.workbook.sheet import SelectionSheet
 from hpn.words.wording import N_
 
 WIDTHS = (44, 14, 14, 14, 14, 14, 14, 14, 14)
 
 
-def write_inputs(sheet: Sheet) -> None:
+def write_inputs(sheet: SelectionSheet) -> None:
     """Write the sheet; phases stand last, so that any number has room."""
     account = sheet.export.account
     for title, lines in (

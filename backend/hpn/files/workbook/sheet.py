@@ -8,8 +8,8 @@ from typing import Any, Protocol
 
 import xlsxwriter
 
-from hpn.account.lines import Line, Table, known
-from hpn.files.export import LOWER_BOUND, Export, Heading
+from hpn.account.lines import Line, LineTable, known
+from hpn.files.export import LOWER_BOUND, Export, ExportTitle
 from hpn.files.words import Paper, paper
 from hpn.files.workbook import EveryDigit
 from hpn.words.reader import Reader
@@ -68,7 +68,7 @@ class Titled(Protocol):
     """Head and foot of a workbook's pages: title block, time of saving and link."""
 
     @property
-    def heading(self) -> Heading:
+    def heading(self) -> ExportTitle:
         """Title block."""
 
     @property
@@ -142,7 +142,7 @@ class Leaf:
 
 
 @dataclass
-class Sheet(Leaf):
+class SelectionSheet(Leaf):
     """A sheet of a selection."""
 
     export: Export
@@ -161,7 +161,7 @@ class Sheet(Leaf):
             self.put(4, reader.text(LOWER_BOUND) if line.is_lower_bound else line.where(reader), "quiet")
             self.row += 1
 
-    def table(self, title: str, table: Table) -> None:
+    def table(self, title: str, table: LineTable) -> None:
         """Table of columns by their heads, each with the unit of its numbers."""
         text, columns = self.reader.text, table.columns
         heads = [self.head(c.head.named.symbol or c.head.label(self.reader), c.head.code) for c in columns]

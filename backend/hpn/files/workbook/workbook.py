@@ -2,14 +2,14 @@
 
 from io import BytesIO
 
-from hpn.account.readings import Reading
+from hpn.account.readings import CheckReading
 from hpn.engine.tolerance_words import tolerance_of
 from hpn.files.export import Export
 from hpn.files.words import catalogue_version
 from hpn.files.workbook.candidates import write_candidates
 from hpn.files.workbook.equations import write_equations
 from hpn.files.workbook.inputs import write_inputs
-from hpn.files.workbook.sheet import LONGEST_TEXT, ROW_POINTS, VERDICT_STYLES, Cell, Sheet, new_book
+from hpn.files.workbook.sheet import LONGEST_TEXT, ROW_POINTS, VERDICT_STYLES, Cell, SelectionSheet, new_book
 from hpn.words.reader import Reader
 from hpn.words.terms import VERDICTS
 from hpn.words.wording import N_
@@ -29,12 +29,12 @@ def workbook(export: Export, reader: Reader) -> bytes:
         (N_("Equations"), write_equations),
     ):
         if write is not write_equations or export.gear(export.candidate):
-            write(Sheet(book.add_worksheet(reader.text(name)), styles, export, reader))
+            write(SelectionSheet(book.add_worksheet(reader.text(name)), styles, export, reader))
     book.close()
     return content.getvalue()
 
 
-def _write_selection(sheet: Sheet) -> None:
+def _write_selection(sheet: SelectionSheet) -> None:
     _write_title_block(sheet)
     _write_checks(sheet)
     account = sheet.export.account
@@ -45,7 +45,7 @@ def _write_selection(sheet: Sheet) -> None:
     sheet.page(WIDTHS, columns=len(WIDTHS))
 
 
-def _write_title_block(sheet: Sheet) -> None:
+def _write_title_block(sheet: SelectionSheet) -> None:
     export, reader, heading = sheet.export, sheet.reader, sheet.export.heading
     sheet.put(0, heading.title or reader.text(N_("Untitled selection")), "title")
     sheet.sheet.set_row(0, 20)
@@ -90,7 +90,7 @@ CHECK_HEADS = (
 )
 
 
-def _write_checks(sheet: Sheet) -> None:
+def _write_checks(sheet: SelectionSheet) -> None:
     text = sheet.reader.text
     sheet.heads(N_("Checks"), *map(text, CHECK_HEADS), numbers=(2, 3, 5))
     for check in sheet.export.account.checks:
@@ -114,14 +114,14 @@ def _write_checks(sheet: Sheet) -> None:
         sheet.row += 1
 
 
-def _sides(sheet: Sheet, reading: Reading) -> tuple[Cell, Cell]:
+def _sides(sheet: SelectionSheet, reading: CheckReading) -> tuple[Cell, Cell]:
     """Demand and limit; the word where one is unlimited."""
     unlimited = sheet.reader.text(N_("unlimited"))
     demand, limit = (sheet.reader.value(value, reading.unit) for value in (reading.demand, reading.limit))
     return unlimited if reading.has_unlimited_demand else demand, unlimited if reading.has_unlimited_limit else limit
 
 
-def _write_notes(sheet: Sheet) -> None:
+def _write_notes(sheet: SelectionSheet) -> None:
     sheet.heads(N_("Assumptions and notes"))
     if of_worst := tolerance_of(sheet.export.candidate):
         sheet.note(sheet.reader.told(of_worst), WIDTHS)

@@ -12,7 +12,7 @@ from hpn import ENGINE_VERSION
 from hpn.application import InputError
 from hpn.application.faults import NO_FIELD, Fault
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import Asked, answers
+from hpn.documents.answers import AxisQuestion, answers
 from hpn.documents.axis import MOST_AXES, MOST_BYTES, READ_ONLY, Axis
 from hpn.documents.merge import resolve
 from hpn.engine.selection import Selection, select
@@ -112,8 +112,8 @@ async def add_axes(request: Request, id: schemas.Id) -> Response:
         require_document(request, machine)
         common = common_of(machine)
         new = [axis for axis in sent.axes if axis.number is None]
-        asked = [Asked(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in new]
-        asked += [Asked(resolved(axis, common), axis.ordering_code) for axis in gone]
+        asked = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in new]
+        asked += [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone]
         found = answers(asked, catalogue)
         drafts = [draft_of(axis, answer) for axis, answer in zip(new, found[: len(new)], strict=True)]
         restored = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, found[len(new) :], strict=True)]

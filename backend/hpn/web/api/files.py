@@ -18,7 +18,7 @@ from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import ordering_code
 from hpn.engine.selection import judge, select
 from hpn.files.aas import Metamodel
-from hpn.files.export import DIGITS, Export, Heading, made_by
+from hpn.files.export import DIGITS, Export, ExportTitle, made_by
 from hpn.links.labels import query_of as query_of_labels
 from hpn.links.writer import to_link
 from hpn.store import SavedSelection
@@ -198,7 +198,7 @@ def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Reque
         application=application,
         selection=answer_of(saved),
         link=absolute(request, url_of(saved.id)),
-        heading=Heading(*(getattr(saved, part.name) or "" for part in fields(Heading))),
+        heading=ExportTitle(*(getattr(saved, part.name) or "" for part in fields(ExportTitle))),
         created=saved.created,
         catalogue=catalogue,
         reply=saved.result,
@@ -214,7 +214,7 @@ def _computed(application: Application, request: Request) -> Export:
         application=application,
         selection=selection,
         link=absolute(request, link),
-        heading=Heading(ordering_code=ordering_code(catalogue, gear).text),
+        heading=ExportTitle(ordering_code=ordering_code(catalogue, gear).text),
         made=datetime.now(UTC),
         catalogue=catalogue,
     )
@@ -230,7 +230,7 @@ def _linked(query: str, request: Request) -> Export:
         export = _of_gear(export, catalogue.find(link.gear).designation)
     labels, gear = link.labels, catalogue.by_designation[export.candidate.designation]
     code = ordering_code(catalogue, gear, labels["order_output"], labels["order_motor"])
-    heading = Heading(labels["title"], labels["ref"], labels["author"], labels["rev"], code.text)
+    heading = ExportTitle(labels["title"], labels["ref"], labels["author"], labels["rev"], code.text)
     return replace(export, heading=heading, link=export.link + query_of_labels({**labels, **code.labels}))
 
 

@@ -18,7 +18,7 @@ from hpn.fleet.order import LINES_GONE, TWO_GONE
 from hpn.web.api import schemas
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import NDJSON, content_type_of, pass_body, wrong_type
-from hpn.web.door.disk import Share
+from hpn.web.door.disk import SpoolShare
 from hpn.web.door.pools import pool_of
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.uploads import MULTIPART
@@ -109,7 +109,7 @@ class TableFile(StreamingResponse):
 # --- What arrives -----------------------------------------------------------------------------------------------------
 
 
-async def _received(request: Request, folder: Path, share: Share) -> Tables:
+async def _received(request: Request, folder: Path, share: SpoolShare) -> Tables:
     """The table of a request, in a file; raises Problem as `pass_body` does, 415 for what is no table."""
     content_type = content_type_of(request)
     if content_type in GONE:
@@ -122,7 +122,7 @@ async def _received(request: Request, folder: Path, share: Share) -> Tables:
     return Tables(path)
 
 
-async def _pass_on(request: Request, share: Share, write: Callable[[bytes], object]) -> None:
+async def _pass_on(request: Request, share: SpoolShare, write: Callable[[bytes], object]) -> None:
     settings: Settings = request.app.state.settings
     pool = pool_of(request, "fleets")
 

@@ -11,7 +11,7 @@ from starlette.responses import Response
 
 from hpn.catalogue import Catalogue
 from hpn.documents.revision import NOW, TODAY, Frozen, label_key
-from hpn.files.export import Export, Heading
+from hpn.files.export import Export, ExportTitle
 from hpn.files.machine.changes import DifferencesExport
 from hpn.files.machine.export import MachineExport, exports_of, pages_of
 from hpn.store import Machine
@@ -211,7 +211,7 @@ async def _before(request: Request, machine: Machine, state: State) -> tuple[str
 def _made(request: Request, machine: Machine, state: State, before: tuple[str, bytes] | None) -> MachineExport:
     document, line = _document(state), state.line
     label, author = (line.label, line.author) if line else ("", None)
-    heading = Heading(document.title or "", document.reference or "", author or document.author or "", label)
+    heading = ExportTitle(document.title or "", document.reference or "", author or document.author or "", label)
     earlier = document_of(before[1]) if before else None
     return MachineExport(
         document=document,
@@ -257,5 +257,5 @@ def _compared(
 ) -> DifferencesExport:
     one, other = documents_of(*states)
     link = absolute(request, f"/machines/{machine.id}/revisions?from={labels[0]}&to={labels[1]}")
-    heading = Heading(machine.title or "", machine.reference or "", machine.author or "")
+    heading = ExportTitle(machine.title or "", machine.reference or "", machine.author or "")
     return DifferencesExport(labels, (one, other), catalogues_of(*states), link, heading, made=datetime.now(UTC))

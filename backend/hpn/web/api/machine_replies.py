@@ -12,7 +12,7 @@ from hpn.application.faults import Fault
 from hpn.documents.answers import AxisAnswer, AxisFault
 from hpn.documents.axis import MOST_AXES
 from hpn.documents.revision import Frozen, FrozenAxis
-from hpn.store import Line, Machine, RevisionLine, SavedAxis
+from hpn.store import DocumentLine, Machine, RevisionLine, SavedAxis
 from hpn.web.api.replies import Moment, ProblemReply, RevisionReply
 from hpn.web.columns import answer_in, common_of, whole_of, without_of
 from hpn.web.door.problems import Problem
@@ -150,7 +150,7 @@ def moment(time: datetime) -> str:
     return time.isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
-def line(found: Line, kind: type[LineReply] = LineReply, **more: Any) -> LineReply:
+def line(found: DocumentLine, kind: type[LineReply] = LineReply, **more: Any) -> LineReply:
     """A line of the list."""
     same = ("id", "kind", "title", "reference", "author", "note", "revision")
     return kind(

@@ -17,7 +17,7 @@ from hpn.catalogue import Catalogue
 from hpn.documents.axis import MOST_AXES, MOST_BYTES, MOST_PHASES
 from hpn.documents.common import Common
 from hpn.documents.document import Document, TitleBlock
-from hpn.store import Change, Machine, MachineDraft, Store, WantedLines
+from hpn.store import Change, LineFilter, Machine, MachineDraft, Store
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes, SavedReply, encode
@@ -129,7 +129,7 @@ Fields = Annotated[
 ]
 
 
-class Wanted(NamedTuple):
+class FieldNames(NamedTuple):
     """Names of the fields of a machine that are wanted, and of those of its axes."""
 
     names: Collection[str]
@@ -165,7 +165,7 @@ async def list_machines(
     """Saved machines, newest first; the Link header gives the next page. `deleted` has the ids that are gone."""
     of_kind: Any = KINDS[kind]
     since, created = _moment(updated_since, "updated_since"), _moment(created_since, "created_since")
-    wanted = WantedLines(of_kind, search, reference, author, selected, since, created)
+    wanted = LineFilter(of_kind, search, reference, author, selected, since, created)
     store: Store = request.app.state.store
     try:
         lines, following = await store.machines(cursor, limit, wanted)
@@ -198,18 +198,18 @@ async def read_machine(
     return await _reply(request, id, await _wanted(request, id, fields))
 
 
-async def _reply(request: Request, id: str, wanted: Wanted | None) -> Response:
+async def _reply(request: Request, id: str, wanted: FieldNames | None) -> Response:
     """A machine, or some fields of it; where these are none of its axes, no axis is read."""
     machine = await found(request, id, None if wanted is None or wanted.of_axes else [])
     body = await compute(request, "pages", _whole, machine, wanted)
     return JSONBytes(body, headers={"ETag": tag_of(machine), "Cache-Control": "no-cache"})
 
 
-def _whole(machine: Machine, wanted: Wanted | None) -> bytes:
+def _whole(machine: Machine, wanted: FieldNames | None) -> bytes:
     return encode(replies.machine(machine) if wanted is None else replies.parts(machine, *wanted))
 
 
-async def _wanted(request: Request, id: str, fields: str | None) -> Wanted | None:
+async def _wanted(request: Request, id: str, fields: str | None) -> FieldNames | None:
     """Fields of a machine by their names; Problem 404 where there is none, 422 for a name that it hasn't."""
     if fields is None:
         return None
@@ -220,7 +220,7 @@ async def _wanted(request: Request, id: str, fields: str | None) -> Wanted | Non
         await found(request, id, [])
         detail = f"names {min(unknown)!r:.80}, which is no field of a machine"
         raise Problem(422, f"fields {detail}", [(("fields",), detail)])
-    return Wanted(names, replies.PARTS if "axes" in names else of_axes)
+    return FieldNames(names, replies.PARTS if "axes" in names else of_axes)
 
 
 @router.patch(

@@ -14,7 +14,7 @@ from starlette.responses import Response
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.store import Draft, SavedSelection, Store, Summary
+from hpn.store import Draft, SavedSelection, SelectionLine, Store
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
 from hpn.web.api.replies import (
@@ -294,7 +294,7 @@ def _today(reopened: Reopened, catalogue: Catalogue) -> TodayReply:
     )
 
 
-def _summary(selection: Summary) -> SummaryReply:
+def _summary(selection: SelectionLine) -> SummaryReply:
     own: dict[str, Any] = {name: getattr(selection, name, None) for name in SummaryReply.__struct_fields__}
     created = selection.created.isoformat(timespec="microseconds").replace("+00:00", "Z")
     return SummaryReply(**own | {"url": url_of(selection.id), "created": created})

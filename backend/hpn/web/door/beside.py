@@ -63,7 +63,7 @@ class EndedError(Exception):
         self.is_excess, self.is_killed = is_excess, is_killed
 
 
-class Answer(msgspec.Struct, array_like=True):
+class CallResult(msgspec.Struct, array_like=True):
     """End of a call: its result, or the traceback of what went wrong; `has_grown` advises to end the process."""
 
     is_done: bool
@@ -71,7 +71,7 @@ class Answer(msgspec.Struct, array_like=True):
     result: msgspec.Raw
 
     @classmethod
-    def received(cls, pipe: IO[bytes]) -> "Answer":
+    def received(cls, pipe: IO[bytes]) -> "CallResult":
         """The next one; EOFError, or ValueError for what is none."""
         head = pipe.read(_LENGTH.size)
         if len(head) < _LENGTH.size:
@@ -117,7 +117,7 @@ class ProcessBeside:
             try:
                 cast(Any, process.stdin).write(call)
                 cast(Any, process.stdin).flush()
-                answer = Answer.received(cast(Any, process.stdout))
+                answer = CallResult.received(cast(Any, process.stdout))
                 result = msgspec.msgpack.decode(answer.result, type=kind if answer.is_done else str)
             except (OSError, EOFError, ValueError):
                 self._reap(process)
@@ -209,7 +209,7 @@ def main(bounds: Bounds | None) -> None:
         signal.setitimer(signal.ITIMER_REAL, bounds.seconds if bounds else 0)  # nothing here holds up the signal
         is_done, result = _done(calls, is_bounded=bounds is not None)
         has_grown = bounds is not None and _peak_bytes() > KEPT_SHARE * bounds.memory_bytes
-        Answer(is_done, has_grown, result).send(answers)
+        CallResult(is_done, has_grown, result).send(answers)
         signal.setitimer(signal.ITIMER_REAL, 0)
 
 

@@ -16,16 +16,16 @@ class Disk:
         self.taken = 0
 
     @contextmanager
-    def share(self) -> Iterator["Share"]:
+    def share(self) -> Iterator["SpoolShare"]:
         """Bytes that one request sets aside, given back at its end."""
-        share = Share(self)
+        share = SpoolShare(self)
         try:
             yield share
         finally:
             share.give_back()
 
 
-class Share:
+class SpoolShare:
     """Bytes that one request has set aside."""
 
     def __init__(self, disk: Disk) -> None:

@@ -9,7 +9,7 @@ from hpn.application.motion import MAXIMUM_MOVES
 from hpn.application.shaft_centre import MOST_SIZES
 from hpn.application.tolerances import MOST_TOLERANCES
 from hpn.links.labels import LABELS
-from hpn.links.rows import OF_ANY_ROW, SHARED, TEXT, TOLERANCE, Table, cells_of, groups_of, shown_columns
+from hpn.links.rows import OF_ANY_ROW, SHARED, TEXT, TOLERANCE, FormTable, cells_of, groups_of, shown_columns
 from hpn.links.symbols import (
     BODY_BY_NAME,
     BY_NAME,
@@ -121,7 +121,7 @@ class Given:
         self.asides: list[str] = []
         self.tolerances: list[str] = []
         self.typed: str | None = None
-        self.bodies = Table(BODY_BY_NAME, MOST_BODIES)
+        self.bodies = FormTable(BODY_BY_NAME, MOST_BODIES)
         self._begin(pairs)
         for name, text in pairs:
             self._write(visible(name), text)
@@ -132,8 +132,8 @@ class Given:
         """Have empty tables; names and loads of rows belong to moves where anything of a motion is given."""
         self.units = units_of(next((text.strip() for name, text in pairs if visible(name) == "mech"), ""))
         self.has_motion = any(text.strip() and visible(name) in _OF_MOTION for name, text in pairs)
-        self.phases = Table((n for n in PHASE_BY_NAME if not (self.has_motion and n in OF_ANY_ROW)), MAXIMUM_PHASES)
-        self.moves = Table(MOVE_BY_NAME, MAXIMUM_MOVES)
+        self.phases = FormTable((n for n in PHASE_BY_NAME if not (self.has_motion and n in OF_ANY_ROW)), MAXIMUM_PHASES)
+        self.moves = FormTable(MOVE_BY_NAME, MAXIMUM_MOVES)
 
     # --- Sorting ------------------------------------------------------------------------------------------------------
 
@@ -197,7 +197,7 @@ class Given:
         if parts:
             self.scalars[name] = BySize(parts[: MOST_SIZES + 1])  # one more than there may be is enough to refuse them
 
-    def table_of(self, name: str) -> Table | None:
+    def table_of(self, name: str) -> FormTable | None:
         """Table that a name is a column of, if any."""
         if name in PHASE_BY_NAME and not (self.has_motion and name in OF_ANY_ROW):
             return self.phases
@@ -258,7 +258,7 @@ class Given:
     # --- What is given ------------------------------------------------------------------------------------------------
 
     @property
-    def duty(self) -> Table:
+    def duty(self) -> FormTable:
         """The table that makes the duty cycle."""
         return self.moves if self.has_motion else self.phases
 
@@ -294,7 +294,7 @@ class Given:
             yield from _beside_motion(self.phases)
 
 
-def _unequal(table: Table, required: Sequence[str]) -> Iterable[FieldProblem]:
+def _unequal(table: FormTable, required: Sequence[str]) -> Iterable[FieldProblem]:
     counts = {name: table.counts.get(name, 0) for name in (*required, *table.counts)}
     longest = max(counts, key=lambda name: counts[name])
     for name, count in counts.items():
@@ -304,7 +304,7 @@ def _unequal(table: Table, required: Sequence[str]) -> Iterable[FieldProblem]:
             yield FieldProblem(name, min(count, table.most), Sentence(template, values))
 
 
-def _beside_motion(phases: Table) -> Iterable[FieldProblem]:
+def _beside_motion(phases: FormTable) -> Iterable[FieldProblem]:
     """Phases where a motion is given: blank ones, as a form submits them, count as absent."""
     for name in phases.counts:
         if filled := [k for k, row in enumerate(phases.rows) if row.get(name, "").strip()]:

@@ -21,7 +21,7 @@ _SPECIAL = {WITHOUT: N_("Without the machine’s value"), TOLERANCE: N_("Toleran
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class InputConflict:
     """One input with its three texts, blank where it is not given; `asked` where both have changed it."""
 
     name: str
@@ -37,7 +37,7 @@ class Difference:
 class Conflict:
     """Differences, and the links of the three ways on; none to both together where nobody knows what was opened."""
 
-    lines: tuple[Difference, ...]
+    lines: tuple[InputConflict, ...]
     known: bool
     yours: str
     over: str
@@ -67,7 +67,7 @@ def _cells(pairs: Pairs) -> dict[Cell, str]:
     return found
 
 
-def _lines(opened: Pairs, theirs: Pairs, yours: Pairs) -> tuple[Difference, ...]:
+def _lines(opened: Pairs, theirs: Pairs, yours: Pairs) -> tuple[InputConflict, ...]:
     mechanism = next((text for name, text in (*yours, *theirs) if name == "mech"), "")
     units = units_of(mechanism)
     sides = [_cells(side) for side in (opened, theirs, yours)]
@@ -81,7 +81,7 @@ def _lines(opened: Pairs, theirs: Pairs, yours: Pairs) -> tuple[Difference, ...]
         before, there, here = (_shown(name, text, units.get(name, "")) for text in texts)
         asked = bool(opened) and texts[0] not in texts[1:] and texts[1] != texts[2]
         label = _SPECIAL.get(name) or NAMES.get(name, name)
-        lines.append(Difference(label, k + 1 if of_row else None, units.get(name, ""), before, there, here, asked))
+        lines.append(InputConflict(label, k + 1 if of_row else None, units.get(name, ""), before, there, here, asked))
     return tuple(lines)
 
 

@@ -46,7 +46,7 @@ GEAR = "gear"
 
 
 @dataclass(frozen=True, slots=True)
-class Head:
+class SortHead:
     """Head of a column: its figure, the address that sorts by it, and how it is sorted now, blank for not."""
 
     field: str
@@ -101,10 +101,10 @@ def _groups(gears: Sequence[Gear], sort: str) -> list[list[Gear]]:
     return [group[::-1] for group in reversed(by_size)] if falls else by_size
 
 
-def _head(field: str, sort: str, kept: Mapping[str, str]) -> Head:
+def _head(field: str, sort: str, kept: Mapping[str, str]) -> SortHead:
     now = sort or GEAR
     order = {field: "ascending", f"-{field}": "descending"}.get(now, "")
-    return Head(field, onward("/catalogue", **{**kept, "sort": f"-{field}" if now == field else field}), order)
+    return SortHead(field, onward("/catalogue", **{**kept, "sort": f"-{field}" if now == field else field}), order)
 
 
 def _filter(text: str, active: bool, kept: Mapping[str, str], name: str) -> Filter:

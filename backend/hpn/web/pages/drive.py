@@ -23,7 +23,7 @@ LISTED_AT_ONCE = 25
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriveView:
     """A gear under an application with a motor, or without one as long as none is chosen."""
 
     application: Application

@@ -10,7 +10,7 @@ from hpn.words.wording import N_
 
 if TYPE_CHECKING:  # Arrow takes half a second to import, which no other page needs
     from hpn.fleet.listing import AxisRow
-    from hpn.fleet.summary import Summary
+    from hpn.fleet.summary import AxisCounts
 
 SHOWN = {
     "": N_("all axes"),
@@ -42,7 +42,7 @@ def foremost(rows: Iterable["AxisRow"]) -> "AxisRow | None":
 class FleetView:
     """A fleet as the template shows it; its script sorts and filters."""
 
-    summary: "Summary"
+    summary: "AxisCounts"
     rows: Sequence["AxisRow"]
     links: Mapping[int, str] = field(default_factory=dict)
     allowed: Mapping[int, float] = field(default_factory=dict)

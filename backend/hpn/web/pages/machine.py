@@ -57,7 +57,7 @@ GONE = N_("There is no such machine. An unsaved machine is kept for a day.")
 
 
 @dataclass(frozen=True, slots=True)
-class TitleBlock:
+class TitleForm:
     """The title block of a form that saves, as it was filled in."""
 
     labels: Mapping[str, str]
@@ -72,7 +72,7 @@ class TitleBlock:
         return not any(self.messages(name) for name in self.labels)
 
 
-EMPTY = TitleBlock(dict.fromkeys(TITLE_BLOCK, ""))
+EMPTY = TitleForm(dict.fromkeys(TITLE_BLOCK, ""))
 
 
 @or_reason(REASON)
@@ -83,7 +83,7 @@ async def show(request: Request) -> Response:
     return await shown(request, saved, 200, EMPTY, editing)
 
 
-async def shown(request: Request, saved: Machine, status: int, form: TitleBlock, editing: Editing) -> Response:
+async def shown(request: Request, saved: Machine, status: int, form: TitleForm, editing: Editing) -> Response:
     """The page of a machine with the form that saves it, and with what is changed of it."""
     latest = await request.app.state.store.revisions(saved.id) if saved.revisions else []
     since = latest[0].created if latest else None
@@ -180,7 +180,7 @@ async def save(request: Request) -> Response:
     """Saves a machine that was calculated, with its title block, and leads back to its page."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
-    form = TitleBlock({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
+    form = TitleForm({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
     saved = await _found(request)
     if not form.is_sound:
         return await shown(request, saved, 422, form, Editing())

@@ -10,7 +10,7 @@ from msgspec import structs
 
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import Asked, AxisAnswer, AxisFault, answers
+from hpn.documents.answers import AxisAnswer, AxisFault, AxisQuestion, answers
 from hpn.documents.axis import Axis
 from hpn.documents.merge import resolve
 from hpn.explain.comparison import is_same
@@ -31,7 +31,7 @@ def draft_of(kept: Kept, catalogue: Catalogue) -> MachineDraft:
     asked = {cells.pop(AXIS): cells for cells in table_of(kept.axes).to_pylist()}
     rows = table_of(kept.answers).select([AXIS, FAULTS]).to_pylist()
     owns = [COLUMNS.application_of(asked[row[AXIS]]) if row[FAULTS] is None else {} for row in rows]
-    found = answers([Asked(resolve(own, {})) for own in owns], catalogue)
+    found = answers([AxisQuestion(resolve(own, {})) for own in owns], catalogue)
     drafts = [_axis(row, own, answer) for row, own, answer in zip(rows, owns, found, strict=True)]
     return MachineDraft(drafts, ENGINE_VERSION, catalogue.version)
 
@@ -101,7 +101,7 @@ def changes(machine: Machine, catalogue: Catalogue) -> list[Changed]:
     """Axes that are answered otherwise today, out of those that had an answer."""
     had = [axis for axis in machine.items if axis.answer["status"] != "open"]
     common = common_of(machine)
-    today = answers([Asked(resolved(axis, common), axis.ordering_code) for axis in had], catalogue)
+    today = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in had], catalogue)
     found = []
     for axis, now in zip(had, today, strict=True):
         before, after = _compared(answer_in(axis.answer)), _compared(now)

@@ -7,14 +7,14 @@ from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.store import WantedLines
+from hpn.store import LineFilter
 from hpn.web.archive import Line
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem, needs
 from hpn.web.form.linked import onward
 from hpn.web.pages.machine import REASON
-from hpn.web.pages.machine_upload import WORDS, Draft
+from hpn.web.pages.machine_upload import WORDS, Upload
 from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saved_list import LINES_ON_PAGE, NO_SUCH_PART
@@ -22,7 +22,7 @@ from hpn.words.fields import Model
 from hpn.words.wording import Sentence
 
 
-class Wanted(Model):
+class MachineFilter(Model):
     """Filter of the list: those with every word of a search, or with an axis that has no suitable gear."""
 
     search: Line = ""
@@ -33,10 +33,16 @@ class Wanted(Model):
 async def show_machines(request: Request) -> Response:
     """Saved machines, newest first. `/api/v1/machines` says the same as JSON."""
     query = request.query_params
-    cursor, lines, following, problems, wanted = query.get("cursor") or None, [], None, tuple[Sentence, ...](), Wanted()
+    cursor, lines, following, problems, wanted = (
+        query.get("cursor") or None,
+        [],
+        None,
+        tuple[Sentence, ...](),
+        MachineFilter(),
+    )
     try:
-        wanted = Wanted.model_validate({name: query[name] for name in ("search", "show") if name in query})
-        filter = WantedLines(search=wanted.search or None, todo=wanted.show == "todo")
+        wanted = MachineFilter.model_validate({name: query[name] for name in ("search", "show") if name in query})
+        filter = LineFilter(search=wanted.search or None, todo=wanted.show == "todo")
         lines, following = await request.app.state.store.machines(cursor, LINES_ON_PAGE, filter)
     except ValidationError as error:
         problems = tuple(Sentence("{text}", {"text": fault.text}) for fault in Problem.of(error).errors)
@@ -49,7 +55,7 @@ async def show_machines(request: Request) -> Response:
         "wanted": wanted,
         "newest": cursor and onward(ADDRESS, **given),
         "older": following and onward(ADDRESS, **given, cursor=following),
-        "draft": Draft(),
+        "draft": Upload(),
         "problems": problems,
     }
     return await compute(request, "pages", page, request, "machines.html", 422 if problems else 200, **shown)

@@ -13,7 +13,7 @@ from hpn.links.labels import query_of
 from hpn.links.writer import to_link
 from hpn.web.columns import answer_in, resolved
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
-from hpn.web.pages.machine_view import MachineView, Row
+from hpn.web.pages.machine_view import MachineRow, MachineView
 from hpn.words.titles import faults_of
 from hpn.words.wording import Sentence
 
@@ -29,7 +29,7 @@ class Opened(NamedTuple):
     remedies: tuple[Sentence, ...] = ()
 
 
-def opened(view: MachineView, rows: Iterable[Row]) -> dict[int, Opened]:
+def opened(view: MachineView, rows: Iterable[MachineRow]) -> dict[int, Opened]:
     """The same of some axes, by their numbers."""
     found: dict[int, Opened] = {}
     worked_out = 0
@@ -42,20 +42,20 @@ def opened(view: MachineView, rows: Iterable[Row]) -> dict[int, Opened]:
     return found
 
 
-def _reasons(row: Row) -> tuple[Reason, ...]:
+def _reasons(row: MachineRow) -> tuple[Reason, ...]:
     from hpn.web.pages.machine_answers import reasons  # needs Arrow
 
     return tuple(reasons(answer_in(row.answer).faults))
 
 
-def link_of(row: Row, application: Application) -> str:
+def link_of(row: MachineRow, application: Application) -> str:
     """Address of an axis in the workbench; blank where it is too long for one."""
     titled = "" if any(faults_of(row.name)) else query_of({"title": row.name})
     link = to_link(application) + titled
     return link if len(link) <= MAXIMUM_QUERY_BYTES else ""
 
 
-def _remedies(row: Row, application: Application, catalogue: Catalogue) -> tuple[Sentence, ...]:
+def _remedies(row: MachineRow, application: Application, catalogue: Catalogue) -> tuple[Sentence, ...]:
     """Changes that each alone make the nearest gear fit."""
     try:
         candidate = select(application, catalogue).candidate(row.gear or "")

@@ -17,12 +17,12 @@ from starlette.responses import RedirectResponse, Response
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.beside import read_machine
-from hpn.fleet.faults import Fault
+from hpn.fleet.faults import CellFault
 from hpn.fleet.order import MOST_AXES, MOST_PHASES
 from hpn.links.symbols import AXIS_INPUTS
 from hpn.store import MachineDraft, NoRoomError, ShareSpentError, StoreUnavailableError
 from hpn.store.machines import MOST_OF_CALLER
-from hpn.tables.files import Wanted, packed, unpacked
+from hpn.tables.files import TableBounds, packed, unpacked
 from hpn.tables.reading import Reading
 from hpn.tables.table import Table
 from hpn.web.door.access import admit
@@ -70,7 +70,7 @@ EXAMPLE_AXES: Mapping[str, str] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Draft:
+class Upload:
     """State of the upload: what was given, what it is read as, and what is wrong.
 
     `of` names what the choices belong to; `carried` is the table itself, for a form that can't send its file again.
@@ -90,7 +90,7 @@ class Taken(NamedTuple):
     """Axes to be sized, what is wrong with their cells, and the rows of a table of cells that each came of."""
 
     rows: Sequence[Mapping[str, Any]]
-    faults: Sequence[Fault] = ()
+    faults: Sequence[CellFault] = ()
     origins: Mapping[str, Sequence[int]] = MappingProxyType({})
 
 
@@ -99,11 +99,11 @@ class Taken(NamedTuple):
 
 async def upload(request: Request) -> Response:
     """Shows how each column is read, or sizes the axes and leads to their page."""
-    draft, headers = Draft(), {}
+    draft, headers = Upload(), {}
     try:
         require_same_origin(request)
         parts = await read_parts(request, request.app.state.settings.maximum_batch_body_bytes)
-        draft = Draft(parts.get("text", b"").decode(errors="replace"))
+        draft = Upload(parts.get("text", b"").decode(errors="replace"))
         draft = await _read(request, parts)
         if draft.taken:
             return RedirectResponse(f"{ADDRESS}/{await _sized(request, draft.taken)}", 303)
@@ -121,12 +121,12 @@ async def upload(request: Request) -> Response:
     return response
 
 
-async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
+async def _read(request: Request, parts: Mapping[str, bytes]) -> Upload:
     """Upload, or table that is carried along, read beside the service; `taken` once nothing is left to be asked."""
     content = parts.get("file") or parts.get("text", b"").strip()
     content = content or await compute(request, "pages", unpacked, parts.get("table", b""))
     if not content.strip():
-        return Draft(problems=(Sentence(NOTHING),))
+        return Upload(problems=(Sentence(NOTHING),))
     wanted = await compute(request, "pages", _wanted)
     fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
     found = await compute_beside(
@@ -136,7 +136,7 @@ async def _read(request: Request, parts: Mapping[str, bytes]) -> Draft:
         raise Problem(422, Sentence("{text}", {"text": found.refusal}))
     _require_few(found.axes, found.phases)
     if found.reading.suffix:
-        return Draft(fields.get("text", ""), taken=Taken(found.rows, found.faults))
+        return Upload(fields.get("text", ""), taken=Taken(found.rows, found.faults))
     return await compute(request, "pages", _draft_of, fields, content, found.reading)
 
 
@@ -148,20 +148,20 @@ def _require_few(axes: int, phases: int) -> None:
             raise Problem(413, Sentence(template, values))
 
 
-def _wanted() -> Wanted:
+def _wanted() -> TableBounds:
     from hpn.web.pages import upload_bounds
 
     return upload_bounds.WANTED
 
 
-def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Draft:
+def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Upload:
     table, problems = reading.table, tuple[Sentence, ...]()
     assert table is not None
     if table.problem:
         problems = (table.problem, *([Sentence(LARGER)] if "most" in table.problem.values else ()))
     taken = Taken(table.axes, (), table.origins) if table.whole and "size" in fields else None
     carried = packed(content) if reading.sheets else ""
-    return Draft(fields.get("text", ""), problems, table, reading.of, carried, reading.sheets, reading.sheet, taken)
+    return Upload(fields.get("text", ""), problems, table, reading.of, carried, reading.sheets, reading.sheet, taken)
 
 
 async def _sized(request: Request, taken: Taken) -> str:

@@ -28,7 +28,7 @@ MARGINS = ("unsuitable", "unrated", "open", "suitable")
 """Verdicts in the order in which axes need somebody."""
 
 
-class Row(NamedTuple):
+class MachineRow(NamedTuple):
     """An axis with its place in the machine; its figures are those of its gear, or of the nearest miss."""
 
     place: int
@@ -77,11 +77,11 @@ class Row(NamedTuple):
         return life_of(answer["shortest_life_h"], of) if of or endless else None
 
 
-def _figure(name: str) -> Callable[[Row], Any]:
+def _figure(name: str) -> Callable[[MachineRow], Any]:
     return lambda row: row.axis.answer[name]
 
 
-ORDERS: Mapping[str, Callable[[Row], Any]] = {
+ORDERS: Mapping[str, Callable[[MachineRow], Any]] = {
     "place": lambda row: row.place,
     "number": lambda row: row.axis.number,
     "axis": lambda row: row.name.casefold(),
@@ -105,10 +105,10 @@ SORTINGS = {
 """Orders that are offered by name."""
 
 
-def _by_need(rows: Iterable[Row]) -> list[Row]:
+def _by_need(rows: Iterable[MachineRow]) -> list[MachineRow]:
     """Axes without a suitable gear first, the worst of them before all, then the others by falling utilisation."""
 
-    def need(row: Row) -> tuple[int, bool, float]:
+    def need(row: MachineRow) -> tuple[int, bool, float]:
         used = row.answer["utilisation"]
         return MARGINS.index(row.status), used is not None, -(used or 0)
 
@@ -135,7 +135,7 @@ class Chosen:
         number = int(part) if part.isascii() and part.isdigit() and len(part) < 6 else 1
         return cls(**given, part=max(number, 1))
 
-    def out_of(self, rows: Sequence[Row], since: datetime | None) -> list[Row]:
+    def out_of(self, rows: Sequence[MachineRow], since: datetime | None) -> list[MachineRow]:
         """Rows that are shown, in their order."""
         word = self.search.strip().casefold()
         found = [
@@ -159,12 +159,12 @@ class Chosen:
         return f"{path}?{urlencode(pairs)}" if pairs else path
 
 
-def is_changed(row: Row, since: datetime | None) -> bool:
+def is_changed(row: MachineRow, since: datetime | None) -> bool:
     """True for an axis that was changed after the latest revision; never without one."""
     return since is not None and row.axis.updated > since
 
 
-class Shown(NamedTuple):
+class FieldValue(NamedTuple):
     """A value of a field, as a common one or an axis's own; None where a common value does not hold for the axis."""
 
     symbol: Symbol
@@ -176,12 +176,12 @@ IN_ORDER = (*SHORT, *(path for path in COMMON if path not in SHORT))
 """Fields that may be common, those that most machines have first."""
 
 
-def common_values(common: Mapping[str, Any]) -> list[Shown]:
+def common_values(common: Mapping[str, Any]) -> list[FieldValue]:
     """Common values of a machine."""
     return _shown(dict(flat(common)))
 
 
-def own_values(axis: SavedAxis) -> list[Shown]:
+def own_values(axis: SavedAxis) -> list[FieldValue]:
     """Values that an axis has of its own where there might be a common one; None where it does without one."""
     return _shown({**dict(flat(_parts(own_of(axis)))), **dict.fromkeys(without_of(axis))})
 
@@ -191,9 +191,9 @@ def _parts(own: Json) -> Json:
     return {name: own[name] for name in ("requirements", "output_load", "application_area", "rank_by") if name in own}
 
 
-def _shown(values: Mapping[str, Any]) -> list[Shown]:
+def _shown(values: Mapping[str, Any]) -> list[FieldValue]:
     named = ((BY_PATH.get(tuple(path.split("."))), path) for path in IN_ORDER if path in values)
-    return [Shown(symbol, _plain(values[path])) for symbol, path in named if symbol is not None]
+    return [FieldValue(symbol, _plain(values[path])) for symbol, path in named if symbol is not None]
 
 
 def _plain(value: Any) -> Any:
@@ -211,7 +211,7 @@ LARGEST = 1e15
 """Number beyond every bound of an input."""
 
 
-def bound_of(row: Row, common: Mapping[str, Any]) -> float:
+def bound_of(row: MachineRow, common: Mapping[str, Any]) -> float:
     """Largest utilisation with which the governing check of an axis passes."""
     values = {**dict(flat(common)), **dict.fromkeys(without_of(row.axis)), **dict(flat(_parts(own_of(row.axis))))}
     u = values.get("requirements.utilisation")
@@ -237,9 +237,9 @@ class MachineView:
         return f"{ADDRESS}/{self.machine.id}"
 
     @cached_property
-    def all(self) -> list[Row]:
+    def all(self) -> list[MachineRow]:
         """All its axes."""
-        return [Row(place, axis) for place, axis in enumerate(self.machine.items, 1)]
+        return [MachineRow(place, axis) for place, axis in enumerate(self.machine.items, 1)]
 
     @cached_property
     def common(self) -> Json:
@@ -247,12 +247,12 @@ class MachineView:
         return common_of(self.machine)
 
     @cached_property
-    def found(self) -> list[Row]:
+    def found(self) -> list[MachineRow]:
         """Axes that the address chooses."""
         return self.chosen.out_of(self.all, self.since)
 
     @cached_property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[MachineRow]:
         """Those of them on this part."""
         return self.found[(self.chosen.part - 1) * ROWS_ON_PAGE : self.chosen.part * ROWS_ON_PAGE]
 
@@ -276,7 +276,7 @@ class MachineView:
         return len(self.all) - (self.counts["suitable"] if show == "todo" else 0)
 
     @cached_property
-    def top(self) -> Row | None:
+    def top(self) -> MachineRow | None:
         """The suitable axis that is used most."""
         used = [row for row in self.all if row.status == "suitable" and row.answer["utilisation"] is not None]
         return max(used, key=lambda row: row.answer["utilisation"], default=None)
@@ -301,20 +301,20 @@ class MachineView:
         """Number of gears."""
         return sum(gear.quantity for gear in self.order.gears)
 
-    def bound(self, row: Row) -> float:
+    def bound(self, row: MachineRow) -> float:
         """Largest utilisation with which the governing check of an axis passes."""
         return bound_of(row, self.common)
 
-    def own(self, row: Row) -> list[Shown]:
+    def own(self, row: MachineRow) -> list[FieldValue]:
         """Values that an axis has of its own."""
         return own_values(row.axis)
 
     @cached_property
-    def values(self) -> list[Shown]:
+    def values(self) -> list[FieldValue]:
         """Common values."""
         return common_values(self.common)
 
-    def is_changed(self, row: Row) -> bool:
+    def is_changed(self, row: MachineRow) -> bool:
         """True for an axis that was changed after the latest revision."""
         return is_changed(row, self.since)
 

@@ -20,7 +20,7 @@ from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
 from hpn.links.rows import TEXT, filled, used_columns
 from hpn.links.symbols import BY_NAME, PHASE_BY_NAME
 from hpn.links.writer import to_link
-from hpn.tables.files import Wanted, packed, tidied, unpacked
+from hpn.tables.files import TableBounds, packed, tidied, unpacked
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES
 from hpn.tables.outcomes import MOST_ROWS_TRIED
 from hpn.tables.reading import Reading
@@ -44,7 +44,7 @@ from hpn.words.wording import N_, Sentence
 
 NOTHING = N_("the workbook is empty")
 _AXIS = re.compile(r"([A-Za-z0-9_-]{1,60})/([0-9]{1,10})")
-WANTED = Wanted(CYCLE, MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
+WANTED = TableBounds(CYCLE, MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import TypeVar
 from starlette.requests import Request
 
 from hpn.tables.columns import Choices
-from hpn.tables.files import Wanted
+from hpn.tables.files import TableBounds
 from hpn.tables.reading import Reading, reading_of
 from hpn.web.door.pools import compute, compute_beside
 from hpn.web.door.visit import current
@@ -22,7 +22,7 @@ SHORT_CHARACTERS = 2_000
 _PLACE = Pattern(r"([ru])([0-9]{1,6})", 7)
 
 
-async def read(request: Request, content: bytes | str, wanted: Wanted, fields: Mapping[str, str]) -> Reading:
+async def read(request: Request, content: bytes | str, wanted: TableBounds, fields: Mapping[str, str]) -> Reading:
     """Reading of a file or a text, by the answers in the fields of a form; raises Problem 413 or 503."""
     work = await compute(request, "pages", work_of, reading_of, content, wanted, fields)
     if isinstance(content, str) and len(content) <= SHORT_CHARACTERS:
@@ -31,9 +31,9 @@ async def read(request: Request, content: bytes | str, wanted: Wanted, fields: M
 
 
 def work_of(
-    how: Callable[[bytes | str, Wanted, Choices, Collection[str]], T],
+    how: Callable[[bytes | str, TableBounds, Choices, Collection[str]], T],
     content: bytes | str,
-    wanted: Wanted,
+    wanted: TableBounds,
     fields: Mapping[str, str],
 ) -> Callable[[], T]:
     """The call that reads. A column without a unit is in that of the wire where the reader sees the same."""

@@ -21,7 +21,7 @@ from hpn.explain.drawings import Pictures, Subject
 from hpn.files.export import DIGITS
 from hpn.links.writer import to_link
 from hpn.web.door.visit import current
-from hpn.web.pages.drive import Drive
+from hpn.web.pages.drive import DriveView
 from hpn.words.quantities import LISTED
 from hpn.words.reader import Reader
 from hpn.words.wording import Named, Sentence
@@ -126,11 +126,11 @@ class Result:
         return max(known, key=lambda one: one[1] / self.bounds[one[0]]) if self.chosen.missing and known else None
 
     @cached_property
-    def drive(self) -> Drive | None:
+    def drive(self) -> DriveView | None:
         """Motor of the chosen candidate, or None where what it needs is not kept."""
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
-        return Drive(self.application, self.gear, self.catalogue, self.selection, self.links)
+        return DriveView(self.application, self.gear, self.catalogue, self.selection, self.links)
 
     @property
     def tolerance(self) -> Sentence | None:

@@ -30,7 +30,7 @@ CHANGED = N_("This was renamed or deleted since you opened the page. Open it aga
 NO_SUCH_PART = N_("This part of the list can’t be found; its address is incomplete.")
 
 
-class Wanted(Model):
+class SelectionFilter(Model):
     """Filter of the list: those of a reference, or those with every word of a search."""
 
     reference: Line | None = None
@@ -54,7 +54,7 @@ async def show_selections(request: Request) -> Response:
     store: Store = request.app.state.store
     status = 422
     try:
-        wanted = Wanted.model_validate(given)
+        wanted = SelectionFilter.model_validate(given)
         part = await store.page(reference=wanted.reference, search=wanted.search, cursor=cursor, limit=LINES_ON_PAGE)
     except ValidationError as error:
         shown["errors"] = {fault.location[0]: fault.text for fault in Problem.of(error).errors}

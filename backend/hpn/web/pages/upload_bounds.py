@@ -2,7 +2,7 @@
 
 from hpn.fleet.columns import are_taken
 from hpn.links.symbols import AXIS_INPUTS
-from hpn.tables.files import Wanted
+from hpn.tables.files import TableBounds
 
-WANTED = Wanted(AXIS_INPUTS, most_rows=50_000, most_characters=4_000_000, takes=are_taken)
+WANTED = TableBounds(AXIS_INPUTS, most_rows=50_000, most_characters=4_000_000, takes=are_taken)
 """Most rows and characters of a text whose columns are not named as `hpn fleet` names them."""
