@@ -7,8 +7,8 @@ from urllib.parse import parse_qs, quote, urlsplit
 import pytest
 from starlette.testclient import TestClient
 
+from hpn.links.rows import ROWS_IN_TABLE
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
-from hpn.web.form.form import ROWS_IN_TABLE
 from tests.web.paste import GERMAN, HTMX, LINK, LONG, cells, chosen, of, query_of
 
 

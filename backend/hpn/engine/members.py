@@ -142,10 +142,15 @@ def _most_points(box: Box) -> int:
     return int(max(MOST_CELLS // max(box.duty.typed.torque_Nm.shape[-1], len(box.intervals), 1), LEAST_SAMPLES))
 
 
+def moving_of(intervals: Sequence[Interval]) -> tuple[Interval, ...]:
+    """Those intervals that change the course of a motion."""
+    return tuple(one for one in intervals if one.place[0] == "motion" and one.place[-1] not in LOADS)
+
+
 def members_of(application: Application, catalogue: Catalogue, intervals: Sequence[Interval] | None = None) -> Members:
     """Boxes of an application with its intervals, or with others; InputError where a corner is no application."""
     every = application.intervals if intervals is None else tuple(intervals)
-    moving = tuple(one for one in every if one.place[0] == "motion" and one.place[-1] not in LOADS)
+    moving = moving_of(every)
     left = tuple(one for one in every if one not in moving)
     members = Members(application, catalogue, [], moving)
     corners: Sequence[Mapping[Place, float]] = [{}]

@@ -34,6 +34,10 @@ NOTICES: Mapping[str, str] = {
         "In an emergency stop pinion or pulley load the shaft with up to {radial_N}, above the permissible radial load "
         "of {names}; not checked."
     ),
+    "tolerances_of_motion_sampled": N_(
+        "The motion itself varies with {count} tolerances. It is looked at in every corner with up to {most} of load, "
+        "friction and efficiency; else it is sampled, as here, and a worse case may lie between the samples."
+    ),
     "application_area": N_(
         "Use in this area ({area}) needs a risk assessment and the manufacturer’s approval (handbook 2.4)."
     ),

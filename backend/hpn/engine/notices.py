@@ -12,6 +12,7 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.duty import unasked_shaft_load_N
 from hpn.engine.evaluation import SUITABLE, Evaluation
 from hpn.engine.figures import shaft_centre_mm
+from hpn.engine.members import MOST_CONVEX, Members, moving_of
 from hpn.engine.motor_torques import known_efficiency, leaves_curve
 from hpn.engine.notice import AREAS, Notice, notice
 from hpn.physics.equations import ROUNDING, FloatArray
@@ -25,6 +26,7 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
     if application.application_area is not None:
         found.append(notice("application_area", area=AREAS[application.application_area]))
     found += _on_the_motion(application.duty_cycle)
+    found += _on_tolerances(application, evaluation)
     found += _on_the_shaft(application, evaluation, index)
     found += _on_stop_and_life(application, evaluation, index)
     found += _on_stiffness(application, evaluation, index)
@@ -60,6 +62,14 @@ def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
         yield notice("motion_left_off")
     if isinstance(cycle.motion.mechanism, Linear) and cycle.motion.mechanism.has_idle_coefficient:
         yield notice("friction_without_effect")
+
+
+def _on_tolerances(application: Application, evaluation: Evaluation) -> Iterable[Notice]:
+    if not application.tolerances or application.duty_cycle.motion is None:
+        return
+    moving = moving_of(application.intervals)
+    if moving and not Members(application, evaluation.catalogue, [], moving).is_fixed:
+        yield notice("tolerances_of_motion_sampled", count=str(len(moving)), most=str(MOST_CONVEX))
 
 
 def _on_the_shaft(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:

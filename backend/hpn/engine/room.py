@@ -14,15 +14,17 @@ from msgspec import UNSET, UnsetType
 from pydantic import Field
 
 from hpn.application import Application, InputError
-from hpn.application.tolerances import Interval
+from hpn.application.tolerances import Deviation, Interval, Tolerance
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
+from hpn.engine.allowed import with_listed_motor
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate, judged_by
 from hpn.engine.members import SAMPLES, Members, members_of
 from hpn.engine.tolerance import Found, chunks_of, worst_bound, worst_cases
 from hpn.physics.equations import ROUNDING
 from hpn.words.reply import Reply
+from hpn.words.wording import rounded
 
 CLOSE = 1e-9
 """Relative width in which the factor of growth is known."""
@@ -142,16 +144,59 @@ def room_of(
 # --- Growth -----------------------------------------------------------------------------------------------------------
 
 
-def _growth(alone: _Alone, intervals: Sequence[Interval], holds: bool) -> float | None:
-    """Factor by which all tolerances may grow, or must shrink; None without a limit."""
-    most = min((one.most_growth for one in intervals), default=math.inf)
+def allowed_of(application: Application, gear: Gear, catalogue: Catalogue, path: str) -> float | None:
+    """Factor by which one tolerance may grow, or must shrink, the others as given, so that a gear holds.
+
+    Exact where every check is proved: a larger box holds the smaller one, so its worst case is no better. None without
+    a limit, and 0 where the gear fails though this input is exact.
+    """
+    equipped, gears = with_listed_motor(application, catalogue), catalogue.listed([gear])
+    alone, intervals = _Alone(application, evaluate(Duty.of([equipped]), gears, catalogue)), application.intervals
+    holds = alone.worst([intervals], SAMPLES)[1].verdict.item(0, 0) == SUITABLE
+    return _growth(alone, intervals, holds, path)
+
+
+def with_tolerance(application: Application, path: str, factor: float) -> Application:
+    """The application with one tolerance by a factor, in three digits that never exceed it."""
+    given = (application.tolerances or {})[path]
+    return application.model_copy(
+        update={"tolerances": {**(application.tolerances or {}), path: scaled(given, factor)}}
+    )
+
+
+def scaled(tolerance: Tolerance, factor: float) -> Tolerance:
+    """A tolerance by a factor, in three digits that never exceed it."""
+
+    def number(value: float) -> float:
+        return float(rounded(value * factor, 3, "down"))
+
+    def side(given: Deviation | None) -> Deviation | None:
+        return given and Deviation(**{name: number(value) for name, value in given if value is not None})
+
+    if tolerance.minus or tolerance.plus:
+        return Tolerance(minus=side(tolerance.minus), plus=side(tolerance.plus))
+    return Tolerance(**{name: number(value) for name, value in tolerance if isinstance(value, float)})
+
+
+def share_of(application: Application, gear: Gear, catalogue: Catalogue, samples: int) -> Share:
+    """Share of so many points at random at which a gear fails."""
+    equipped, gears = with_listed_motor(application, catalogue), catalogue.listed([gear])
+    alone = _Alone(application, evaluate(Duty.of([equipped]), gears, catalogue))
+    return _share(alone, alone.members(application.intervals), samples)
+
+
+def _growth(alone: _Alone, intervals: Sequence[Interval], holds: bool, path: str | None = None) -> float | None:
+    """Factor by which all tolerances may grow, or must shrink, or that of one path alone; None without a limit."""
+    growing = [path is None or one.path == path for one in intervals]
+    most = min((one.most_growth for one, grows in zip(intervals, growing, strict=True) if grows), default=math.inf)
     if not math.isfinite(most):
         return None
 
     def excess(factor: float) -> float:
         """Largest utilisation over its bound less 1; infinite where a check has no number."""
         try:
-            _, judged = alone.worst([[one.grown(factor) for one in intervals]])
+            changed = [one.grown(factor) if grows else one for one, grows in zip(intervals, growing, strict=True)]
+            _, judged = alone.worst([changed])
         except InputError:
             return math.inf
         if judged.verdict.item(0, 0) == SUITABLE:

@@ -174,8 +174,13 @@ class Judged:
         code = None if verdict == UNRATED else judged.checks[judged.governing.item(index, gear)].code
         return verdict == SUITABLE, used if isfinite(used) else None, code
 
-    def selection(self, link_of: Callable[[Application], str] | None = None, samples: int = 0) -> Selection:
-        """The answer in full, with the links that a function gives and a share of so many points of the tolerances."""
+    def selection(
+        self, link_of: Callable[[Application], str] | None = None, samples: int = 0, *, with_room: bool = True
+    ) -> Selection:
+        """The answer in full, with the links that a function gives and a share of so many points of the tolerances.
+
+        The room over the tolerances takes longer than the rest, and may be left out.
+        """
         evaluation, index = self.evaluation, self.index
         candidates = tuple(candidates_of(evaluation, index))
         checks = tuple(evaluation.checks[place].code for place in evaluation.asked_by(index))
@@ -188,7 +193,7 @@ class Judged:
             candidates=candidates,
             check_definitions=dict(_definitions(checks)),
             notices=notices_of(self.application, evaluation, index),
-            tolerance=self._room(candidates[0], link_of or (lambda _: ""), samples),
+            tolerance=self._room(candidates[0], link_of or (lambda _: ""), samples) if with_room else UNSET,
         )
 
     def _room(self, first: Candidate, link_of: Callable[[Application], str], samples: int) -> Room | UnsetType | None:

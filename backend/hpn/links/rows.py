@@ -48,6 +48,9 @@ TOLERANCE = "tol"
 TEXT = "phases"
 """Field of the form that holds the phases as text, a phase on each line, where they are too many for a table."""
 
+ROWS_IN_TABLE = 100
+"""A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
+
 WIDTHS = {"names": 10, "varying": 9, "loads": 5}
 """Cells of a line of that text by what the phases have."""
 
@@ -94,9 +97,17 @@ class FormTable:
         for row in self.rows:
             for name in hidden:
                 del row[name]
-            row.update(dict.fromkeys(added, ""))
+            row.update({name: "" for name in added if name not in row})
         if not self.rows:
             self._append()
+
+    def widen(self, name: str) -> None:
+        """Have one more column, blank as yet."""
+        if name not in self.names:
+            self.names.append(name)
+            self.counts[name] = max(self.counts.values(), default=0)
+            for row in self.rows:
+                row.setdefault(name, "")
 
     def press(self, do: str, k: int) -> str | None:
         """Edit the rows as one button does; the element to go on from, if it does anything."""

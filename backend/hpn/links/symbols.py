@@ -428,6 +428,11 @@ LABELS = {
     "mx": N_("External torque or force"),
     "gear": CANDIDATE["designation"].name,
     "tol": N_("Tolerance"),
+    **{
+        f"{field}{symbol.name}": symbol.named.name
+        for field in ("tol_", "tols_")
+        for symbol in (*TURN_SYMBOLS, *_SINGLE)
+    },
     **labels.LABELS,
     **labels.OF_AXIS,
 }

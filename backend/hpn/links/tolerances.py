@@ -5,17 +5,18 @@
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from hpn.application import Application
-from hpn.application.tolerances import MOST_TOLERANCES, Deviation, Tolerance
+from hpn.application.tolerances import Deviation, Tolerance
 from hpn.links.symbols import BY_NAME, BY_PATH, MOTION_PATH, MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
 from hpn.tables.numbers import read_value
 from hpn.words.wording import N_, Sentence
 
 LONGEST = 200
 WRITTEN = re.compile(r"([A-Za-z0-9]+)(?:\.([1-9][0-9]{0,4}))?:([^/:]+)(?:/([^/:]+))?")
+COLUMNS = (*PHASE_BY_LEAF, *MOVE_BY_LEAF)
 MOVES = ".".join((*MOTION_PATH[1:], "moves"))
 
 NO_TOLERANCE = N_("must be a symbol and its tolerance, such as T:10p, T.2:0.5 or Jm:0p/15p")
@@ -23,36 +24,64 @@ UNKNOWN = N_("{symbol} is not the symbol of an input that takes a tolerance here
 TWICE = N_("{symbol} has a tolerance twice")
 
 
-def read(texts: Sequence[str], mechanism: str | None) -> tuple[dict[str, Any], list[Sentence]]:
-    """Tolerances of a link by the paths of their inputs, and what is wrong with it; `mechanism` is that of a motion."""
-    found: dict[str, Any] = {}
-    faults: list[Sentence] = []
-    for text in texts[: MOST_TOLERANCES + 1]:
-        match = WRITTEN.fullmatch(text.strip()) if len(text) <= LONGEST else None
-        if match is None:
-            faults.append(Sentence(NO_TOLERANCE))
-            continue
-        symbol = match[1] if match[2] is None else f"{match[1]}.{match[2]}"
-        path = _path_of(match[1], None if match[2] is None else int(match[2]) - 1, mechanism)
-        if path is None or path in found:
-            faults.append(Sentence(TWICE if path else UNKNOWN, {"symbol": symbol}))
-            continue
-        sides = [_deviation(side) for side in match.groups()[2:] if side is not None]
-        wrong = [side for side in sides if isinstance(side, Sentence)]
-        faults += wrong
-        found[path] = sides[0] if len(sides) == 1 else dict(zip(("minus", "plus"), sides, strict=True))
-    return found, faults
+class Side(NamedTuple):
+    """How far an input may lie to one side: a number as a text, in percent or in the input's unit."""
+
+    number: str
+    is_percent: bool
 
 
-def _deviation(text: str) -> dict[str, float] | Sentence:
-    text = text.strip()
-    value = read_value(text.removesuffix("p"), "number")
+class Sides(str):
+    """A tolerance as a link has it, with its one part, or those below and above the value."""
+
+    parts: tuple[Side, ...]
+
+    def __new__(cls, parts: Iterable[Side]) -> "Sides":
+        """A text that behaves as the tolerance in a link would."""
+        kept = tuple(parts)
+        text = super().__new__(cls, "/".join(f"{side.number}{'p' if side.is_percent else ''}" for side in kept))
+        text.parts = kept
+        return text
+
+
+def sides_of(text: str) -> Sides:
+    """Parts of a tolerance of a link."""
+    if isinstance(text, Sides):
+        return text
+    parts = [part.strip() for part in text[:LONGEST].split("/")] if text.strip() else []
+    return Sides(Side(part.removesuffix("p"), is_percent=part.endswith("p")) for part in parts)
+
+
+def read(symbol: str, row: int | None, sides: Sides, mechanism: str | None) -> tuple[str, dict[str, Any]] | Sentence:
+    """Path of a tolerance and its value, or what is wrong with it; `mechanism` is that of a motion."""
+    path = path_of(symbol, row, mechanism)
+    if path is None:
+        return Sentence(UNKNOWN, {"symbol": symbol if row is None else f"{symbol}.{row + 1}"})
+    read = [_deviation(side) for side in sides.parts]
+    if wrong := [side for side in read if isinstance(side, Sentence)]:
+        return wrong[0]
+    values = [side for side in read if not isinstance(side, Sentence)]
+    if not 0 < len(values) <= 2:
+        return Sentence(NO_TOLERANCE)
+    return path, values[0] if len(values) == 1 else dict(zip(("minus", "plus"), values, strict=True))
+
+
+def read_text(text: str, mechanism: str | None) -> tuple[str, dict[str, Any]] | Sentence:
+    """The same of a whole text such as `T.2:10p`."""
+    match = WRITTEN.fullmatch(text.strip()) if len(text) <= LONGEST else None
+    if match is None:
+        return Sentence(NO_TOLERANCE)
+    return read(match[1], int(match[2]) - 1 if match[2] else None, sides_of(text.strip().partition(":")[2]), mechanism)
+
+
+def _deviation(side: Side) -> dict[str, float] | Sentence:
+    value = read_value(side.number, "number")
     if isinstance(value, Sentence):
         return value
-    return {"percent" if text.endswith("p") else "absolute": float(value)}
+    return {"percent" if side.is_percent else "absolute": float(value)}
 
 
-def _path_of(symbol: str, row: int | None, mechanism: str | None) -> str | None:
+def path_of(symbol: str, row: int | None, mechanism: str | None) -> str | None:
     """Path of an input by its symbol and row; None for one that there is none of."""
     if row is None:
         if symbol in PHASE_BY_NAME:
@@ -69,9 +98,17 @@ def _path(place: Sequence[str]) -> str:
 
 
 def written(application: Application) -> Iterator[str]:
-    """Tolerances of an application as a link has them, in the order in which they were given."""
-    for path, tolerance in (application.tolerances or {}).items():
+    """Tolerances of an application as a link has them: those of one row behind the others, row by row."""
+    for path, tolerance in sorted((application.tolerances or {}).items(), key=lambda each: _order(each[0])):
         yield text_of(path, tolerance)
+
+
+def _order(path: str) -> tuple[int, int]:
+    """Row of a path, -1 for none, and its column."""
+    *_, row, field = ("", *path.split("."))
+    if not row.isdigit():
+        return -1, 0
+    return int(row), COLUMNS.index(field) if field in COLUMNS else 0
 
 
 def text_of(path: str, tolerance: Tolerance) -> str:

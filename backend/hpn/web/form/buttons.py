@@ -48,6 +48,8 @@ def _press(given: Given, do: str, what: str, application_of: Reads) -> str | Non
             focus = f"way-{ways.PHASES}" if ways.take_over(given, application_of(given)) else None
         case _ if do in OPTIONAL:
             given.toggle(do)
+        case "tolerances":
+            given.toggle_tolerances()
         case _:
             k = int(what) - 1 if re.fullmatch(r"[0-9]{1,5}", what) else -1
             table = given.bodies if do.endswith("_body") else given.duty

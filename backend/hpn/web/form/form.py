@@ -1,12 +1,12 @@
 """The form: what a query gives, field by field, and the application that it describes."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from urllib.parse import urlencode
 
 from hpn.application import Application
 from hpn.links.labels import LABELS, query_of
-from hpn.links.rows import TOLERANCE, WIDTHS, filled
+from hpn.links.rows import ROWS_IN_TABLE, TOLERANCE, WIDTHS, filled
 from hpn.links.symbols import (
     MECHANISM_SYMBOLS,
     PHASE_SYMBOLS,
@@ -22,13 +22,11 @@ from hpn.tables.by_size import BySize
 from hpn.tables.inputs import NAME
 from hpn.web.form.given import FieldProblem
 from hpn.web.form.helpers import BodyTable
+from hpn.web.form.tolerance_fields import COLUMN, INPUT_OF, OF_ROW, OFFERED, ROW, entries_of, field_of
 from hpn.web.form.ways import START
 from hpn.words.reader import Reader
 from hpn.words.titles import numbered
 from hpn.words.wording import Sentence
-
-ROWS_IN_TABLE = 100
-"""A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
 
 WHEELS = ("rack_and_pinion", "belt")
 """Mechanisms whose pinion or pulley may sit on the gear's shaft."""
@@ -42,7 +40,8 @@ class Form:
     """A query as given, and the application it describes, or why it describes none.
 
     Of a motion the mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia
-    may be worked out from. `tolerances` are those of a link. `asides` are the inputs of other ways to give the cycle.
+    may be worked out from. `tolerances` are those of a link that have no field of their own; those in fields do not
+    count in a form that `is_exact`. `asides` are the inputs of other ways to give the cycle.
     `written` is the marker of the language and units in which a form was filled in; None for a link.
     """
 
@@ -53,6 +52,8 @@ class Form:
     has_motion: bool = False
     bodies: BodyTable = field(default_factory=BodyTable)
     tolerances: tuple[str, ...] = ()
+    has_tolerances: bool = False
+    is_exact: bool = False
     asides: tuple[str, ...] = ()
     shown: frozenset[str] = frozenset()
     gear: str = ""
@@ -134,6 +135,32 @@ class Form:
         """Nobody has filled in a phase yet: neither an application nor an error."""
         return self.application is None and not self.problems
 
+    def offers_tolerance(self, name: str) -> bool:
+        """True for an input with a field for its tolerance."""
+        return self.has_tolerances and not self.is_exact and (name in OFFERED or self.says_tolerance(name))
+
+    @property
+    def in_sheet(self) -> tuple[str, ...]:
+        """Names of the fields above and below the rows of the table."""
+        columns = self.move_columns if self.has_motion else self.columns
+        return ("tp", f"{COLUMN}tp", *(f"{COLUMN}{symbol.name}" for symbol in columns))
+
+    @staticmethod
+    def tolerances_of(names: Sequence[str]) -> list[str]:
+        """Fields of the tolerances of a row's cells."""
+        return [f"{ROW}{name}" for name in names if f"{ROW}{name}" in OF_ROW]
+
+    @property
+    def asks_of_worst(self) -> bool:
+        """True where something is asked of the worst case."""
+        names = ("uw", "ot")
+        return any(name in self.texts for name in names) or any(each.name in names for each in self.problems)
+
+    def says_tolerance(self, name: str) -> bool:
+        """True for an input that has a tolerance of its own or for all rows, or a wrong one."""
+        field = f"{COLUMN}{name}"
+        return field in self.texts or any(problem.name == field for problem in self.problems)
+
     def messages(self, name: str, index: int | None = None) -> list[Sentence]:
         """Messages on one input."""
         return [problem.message for problem in self.problems if (problem.name, problem.index) == (name, index)]
@@ -156,6 +183,8 @@ def for_reader(form: Form, reader: Reader) -> Form:
     tables = (*form.rows, *form.moves, *form.bodies.rows, single)
     cells = [(text, units[name]) for table in tables for name, text in table.items() if name in units]
     cells += [(part.number, units[name]) for name, text in sized.items() for part in text.parts]
+    parted = [pair for table in (*form.rows, *form.moves, single) for pair in table.items() if pair[0] in INPUT_OF]
+    cells += [cell for name, text in parted for cell in entries_of(name, text, units)]
     shown = numbers.to_fields(cells, reader, form.written)
     texts = iter(shown.texts)
     rows, moves, bodies, (named,) = (
@@ -163,6 +192,11 @@ def for_reader(form: Form, reader: Reader) -> Form:
         for part in (form.rows, form.moves, form.bodies.rows, (single,))
     )
     named |= {name: text.shown([next(texts) for _ in text.parts], reader) for name, text in sized.items()}
+    told = iter([field_of(name, text, texts, units, reader) for name, text in parted])
+    rows, moves, (named,) = (
+        tuple({name: next(told) if name in INPUT_OF else text for name, text in table.items()} for table in part)
+        for part in (rows, moves, (named,))
+    )
     return replace(
         form,
         rows=rows,

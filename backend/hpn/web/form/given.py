@@ -21,12 +21,14 @@ from hpn.links.symbols import (
     PHASE_SYMBOLS,
     SYMBOLS,
     TURN_SYMBOLS,
+    mechanism_symbols,
     units_of,
 )
 from hpn.physics.motion.bodies import MOST_BODIES
 from hpn.tables.by_size import BySize, by_size
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import WAS, WRITTEN, Notation
+from hpn.web.form.tolerance_fields import EXACT, INPUT_OF, OF_COLUMN, OF_ROW, ROW, input_of, place, symbol_in, typed
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.likeness import likeness
 from hpn.words.titles import faults_of
@@ -47,16 +49,19 @@ OF_ONE_WAY = {*CYCLE_NAMES, REST_FRICTION, REVERSES}
 
 def is_of_one_way(name: str, text: str) -> bool:
     """True for an input that belongs to one way alone, and for its tolerance."""
-    return (re.split("[.:]", text.strip())[0] if name == TOLERANCE else name) in OF_ONE_WAY
+    return (symbol_in(text) if name == TOLERANCE else input_of(name)) in OF_ONE_WAY
 
 
 _OF_MOTION = {symbol.name for symbol in (*TURN_SYMBOLS, *MECHANISM_SYMBOLS)}.difference(OF_ANY_ROW)
 _OF_PEOPLE = {*LABELS, NAME.role}
 
+FIRST_TOLERANCE = "tol_tp"
+"""Field of a tolerance that every form has."""
+
 CONDITION = ("at_n", "at_life", "at_fw")
 """Speed, life and load coefficient of which a page says what a shaft may carry, where no load is given."""
 
-PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, WRITTEN, WAS, *CONDITION)
+PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, EXACT, WRITTEN, WAS, *CONDITION)
 """Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, the
 buttons that edit the rows, one after the other, and what was typed another way (repeated)."""
 
@@ -82,14 +87,19 @@ class FieldProblem:
     message: Sentence
 
     @property
+    def of_tolerance(self) -> bool:
+        """True for a field of a tolerance."""
+        return self.name in INPUT_OF
+
+    @property
     def of_phase(self) -> bool:
-        """True for an input of a phase."""
-        return self.name in PHASE_BY_NAME
+        """True for an input of a phase, and for its tolerance."""
+        return OF_ROW.get(self.name, self.name) in PHASE_BY_NAME
 
     @property
     def of_move(self) -> bool:
         """True for an input of a move."""
-        return self.name in MOVE_BY_NAME and not self.of_phase
+        return OF_ROW.get(self.name, self.name) in MOVE_BY_NAME and not self.of_phase
 
     @property
     def of_row(self) -> bool:
@@ -99,7 +109,8 @@ class FieldProblem:
     @property
     def place(self) -> str:
         """Element of the page that takes this input."""
-        return f"{self.name}-{self.index or 0}" if self.of_row or self.name in BODY_BY_NAME else f"f-{self.name}"
+        is_one = self.of_row or self.name in BODY_BY_NAME or (self.name == TOLERANCE and self.index is not None)
+        return f"{self.name}-{self.index or 0}" if is_one else f"f-{self.name}"
 
 
 class Given:
@@ -127,6 +138,7 @@ class Given:
             self._write(visible(name), text)
         self.bodies.show(list(BODY_BY_NAME))
         self._show()
+        self._place()
 
     def _begin(self, pairs: Pairs) -> None:
         """Have empty tables; names and loads of rows belong to moves where anything of a motion is given."""
@@ -153,6 +165,8 @@ class Given:
         text = visible(text)
         if name == "i" and (match := _RATIO.fullmatch(text.strip())):
             return match[1]
+        if name in INPUT_OF:
+            return typed(name, text, self.notation, self.units)
         if name in BY_SIZE:
             return BySize(part._replace(number=self._entry(name, part.number)) for part in by_size(text).parts)
         return self._entry(name, text)
@@ -176,18 +190,23 @@ class Given:
             self.page[name] = text
         elif name in LABELS:
             self.labels.setdefault(name, []).append(text)
+        elif name in OF_COLUMN:
+            self._add_single(name, text)
         elif name not in BY_NAME:
             self.unknown.append((name, text))
         elif name in BY_SIZE:
             self._add_by_size(name, by_size(text))
         elif not BY_NAME[name].many:
-            self.single.setdefault(name, []).append(text)
-            if text.strip():  # the plain form submits blank fields too: they count as absent
-                self.scalars.setdefault(name, text)
+            self._add_single(name, text)
         elif text.strip():
             texts = self.lists.setdefault(name, [])
             if len(texts) <= MOST_WISHES:  # one more than there may be is enough to refuse them
                 texts.append(text)
+
+    def _add_single(self, name: str, text: str) -> None:
+        self.single.setdefault(name, []).append(text)
+        if text.strip():  # the plain form submits blank fields too: they count as absent
+            self.scalars.setdefault(name, text)
 
     def _add_by_size(self, name: str, text: BySize) -> None:
         """Take numbers by size, which may be repeated; of those without a size there is one."""
@@ -199,6 +218,7 @@ class Given:
 
     def table_of(self, name: str) -> FormTable | None:
         """Table that a name is a column of, if any."""
+        name = OF_ROW.get(name, name)
         if name in PHASE_BY_NAME and not (self.has_motion and name in OF_ANY_ROW):
             return self.phases
         return self.moves if name in MOVE_BY_NAME else self.bodies if name in BODY_BY_NAME else None
@@ -210,8 +230,32 @@ class Given:
 
     def _show_columns(self) -> None:
         apart = SHARED if self.has_motion else ()
-        self.phases.show(shown_columns(PHASE_BY_NAME, self.shown.difference(apart)))
-        self.moves.show(shown_columns(MOVE_BY_NAME, self.shown))
+        self.phases.show(self._with_tolerances(shown_columns(PHASE_BY_NAME, self.shown.difference(apart))))
+        self.moves.show(self._with_tolerances(shown_columns(MOVE_BY_NAME, self.shown)))
+
+    def _with_tolerances(self, columns: list[str]) -> list[str]:
+        own = [f"{ROW}{name}" for name in columns if f"{ROW}{name}" in OF_ROW]
+        return columns + own if self.has_tolerances else columns
+
+    def _place(self) -> None:
+        """Have the tolerances of a link in their fields."""
+        if self.tolerances and len(self.tolerances) <= MOST_TOLERANCES:
+            inputs = {*self.duty.names, *(symbol.name for symbol in SYMBOLS)}
+            if self.has_motion:
+                inputs.update(s.name for s in mechanism_symbols(self.scalars.get("mech", "").strip()))
+            self.tolerances = place(self.tolerances, self.duty, inputs, self.scalars, self.single)
+            self._show_columns()
+
+    @property
+    def has_tolerances(self) -> bool:
+        """True where inputs have a field for their tolerance."""
+        given = (*self.single, *self.phases.counts, *self.moves.counts)
+        return any(name in INPUT_OF for name in given)
+
+    @property
+    def is_exact(self) -> bool:
+        """True where tolerances don't count for the moment."""
+        return bool(self.page.get(EXACT, "").strip())
 
     # --- What buttons do ----------------------------------------------------------------------------------------------
 
@@ -220,13 +264,28 @@ class Given:
         self.shown ^= {group}
         self._show_columns()
 
+    def toggle_tolerances(self) -> None:
+        """Show the fields of tolerances, or put them out of sight and count; blank ones go."""
+        if self.is_exact or not self.has_tolerances:
+            self.page.pop(EXACT, None)
+            self.single.setdefault(FIRST_TOLERANCE, [""])
+        elif any(name in OF_COLUMN for name in self.scalars) or any(
+            text.strip() for row in self.duty.rows for name, text in row.items() if name in OF_ROW
+        ):
+            self.page[EXACT] = "1"
+        else:
+            for names in (self.single, self.phases.counts, self.moves.counts):
+                for name in INPUT_OF.keys() & names.keys():
+                    del names[name]
+        self._show_columns()
+
     def put(self, name: str, text: str) -> None:
         """Have a text as the only one of a single value."""
         self.single[name], self.scalars[name] = [text], text
 
     def cycle(self) -> list[tuple[str, str]]:
         """Pairs of the duty cycle and of what belongs to the way in which it is given."""
-        single = [(name, text) for name in self.single if name in OF_ONE_WAY for text in self.single[name]]
+        single = [(name, text) for name in self.single if input_of(name) in OF_ONE_WAY for text in self.single[name]]
         single += [(TOLERANCE, text) for text in self.tolerances if is_of_one_way(TOLERANCE, text)]
         tables = (self.phases, self.moves)
         return single + [
@@ -235,7 +294,7 @@ class Given:
 
     def put_cycle(self, pairs: Pairs) -> None:
         """Have another duty cycle, with what belongs to the way in which it is given."""
-        for name in OF_ONE_WAY:
+        for name in [name for name in self.single if input_of(name) in OF_ONE_WAY]:
             self.single.pop(name, None)
             self.scalars.pop(name, None)
         self.typed = None
@@ -250,7 +309,7 @@ class Given:
         for beside in (self.lists, self.page, self.pins, self.unknown, self.asides):
             beside.clear()
         for name in list(self.single):
-            if name not in CYCLE_NAMES:
+            if input_of(name) not in CYCLE_NAMES:
                 del self.single[name]
                 self.scalars.pop(name, None)
         self.tolerances = [text for text in self.tolerances if is_of_one_way(TOLERANCE, text)]

@@ -37,6 +37,7 @@ from hpn.web.form.form import Form
 from hpn.web.form.given import CONDITION, REQUIRED, FieldProblem, Given, Pairs
 from hpn.web.form.helpers import BodyTable, body_table
 from hpn.web.form.refusals import refusal_of
+from hpn.web.form.tolerance_fields import COLUMN, OF_COLUMN, OF_ROW, ROW, fields
 from hpn.words.designations import OTHERS
 from hpn.words.terms import FOR_OTHERS
 from hpn.words.titles import LONGEST_NAME, faults_of
@@ -90,6 +91,8 @@ def parse(pairs: Pairs, whole: Completes = dict) -> Form:
         tolerances=tuple(given.tolerances),
         asides=tuple(given.asides),
         shown=frozenset(given.shown),
+        has_tolerances=given.has_tolerances,
+        is_exact=given.is_exact,
         gear=given.page.get("gear", "").strip(),
         pins=given.pinned(),
         focus=focus,
@@ -106,11 +109,13 @@ def _read(given: Given, whole: Completes) -> tuple[Application | None, list[Fiel
     """Application that is given, or a message for each wrong field; neither where the form is still blank."""
     problems = [*given.problems(), *_list_problems(given)]
     document, unread = _document(given)
+    places: dict[str, FieldProblem] = {}
+    unread += _tolerances(given, document, places)
     document = whole(document)
     if _untouched(given):
         return None, problems
     problems += unread
-    application, refused = _validated(document, given.duty.rows, problems)
+    application, refused = _validated(document, given.duty.rows, problems, places)
     problems += refused
     return None if problems else application, problems
 
@@ -151,6 +156,8 @@ def _document(given: Given) -> tuple[dict[str, Any], list[FieldProblem]]:
             problems = [_with_two_phases(problem, columns[problem.name]) for problem in problems]
     document: dict[str, Any] = {"duty_cycle": cycle}
     for name, text in given.scalars.items():
+        if name in OF_COLUMN:
+            continue
         symbol = BY_NAME[name]
         if name in BY_SIZE:
             document.setdefault(symbol.path[0], {})[symbol.path[1]] = _numbers_by_size(name, by_size(text), problems)
@@ -159,11 +166,34 @@ def _document(given: Given) -> tuple[dict[str, Any], list[FieldProblem]]:
     for name, texts in given.lists.items():
         values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
         document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
-    if given.tolerances:
-        mechanism = given.scalars.get("mech", "").strip() if given.has_motion else None
-        document["tolerances"], faults = tolerances.read(given.tolerances, mechanism)
-        problems += (FieldProblem(TOLERANCE, None, fault) for fault in faults)
     return document, problems
+
+
+def _tolerances(given: Given, document: dict[str, Any], places: dict[str, FieldProblem]) -> list[FieldProblem]:
+    """Set tolerances into a document, and the field of each by its path; what is wrong with them."""
+    if given.is_exact:
+        return []
+    mechanism = given.scalars.get("mech", "").strip() if given.has_motion else None
+    found = [
+        (FieldProblem(one.name, one.index, Sentence("")), tolerances.read(one.symbol, one.row, one.sides, mechanism))
+        for one in fields(given.duty, given.scalars)
+    ]
+    found += [
+        (FieldProblem(TOLERANCE, k, Sentence("")), tolerances.read_text(text, mechanism))
+        for k, text in enumerate(given.tolerances)
+    ]
+    problems, values = [], {}
+    for place, said in found:
+        if isinstance(said, Sentence):
+            problems.append(replace(place, message=said))
+        elif said[0] in values:
+            symbol = tolerances.symbol_of(said[0])
+            problems.append(replace(place, message=Sentence(tolerances.TWICE, {"symbol": symbol})))
+        else:
+            values[said[0]], places[said[0]] = said[1], place
+    if values:
+        document["tolerances"] = values
+    return problems
 
 
 def _numbers_by_size(name: str, text: BySize, problems: list[FieldProblem]) -> dict[str, float] | float | None:
@@ -219,7 +249,9 @@ def _table(
             entry: dict[str, Any] = {}
             table.append(entry)
             for name, text in row.items():
-                _put(entry, symbols[name].path[-1:], symbols[name], text, FieldProblem(name, k, Sentence("")), problems)
+                place = FieldProblem(name, k, Sentence(""))
+                if name not in OF_ROW:
+                    _put(entry, symbols[name].path[-1:], symbols[name], text, place, problems)
     return table
 
 
@@ -246,7 +278,10 @@ def _put(
 
 
 def _validated(
-    document: dict[str, Any], rows: Sequence[Mapping[str, str]], known: Sequence[FieldProblem]
+    document: dict[str, Any],
+    rows: Sequence[Mapping[str, str]],
+    known: Sequence[FieldProblem],
+    of_tolerances: Mapping[str, FieldProblem],
 ) -> tuple[Application | None, list[FieldProblem]]:
     kept = [k for k, row in enumerate(rows) if filled(row)] or [0]
     places = {(problem.name, problem.index) for problem in known}
@@ -257,6 +292,8 @@ def _validated(
     problems = []
     for error in errors:
         name, index = place_of(error["loc"], kept)
+        if error["loc"][:1] == ("tolerances",) and (own := of_tolerances.get(str(error["loc"][1:2][0]))):
+            name, index = own.name, own.index
         if error["type"] == "no_motion":
             name = "n"
         # Unreadable values are left out of the model, which then misses them, or the part that they belong to.
@@ -272,7 +309,7 @@ def _refused(name: str, error: Any) -> Sentence:
     *path, size = error["loc"]
     if name in BY_SIZE and tuple(path) == BY_NAME[name].path:
         return _on_size(str(size), refusal_of({**error, "loc": path}))
-    if name == TOLERANCE and len(error["loc"]) > 1:  # none has a field of its own
+    if name == TOLERANCE and len(error["loc"]) > 1:  # of several in one field
         symbol = tolerances.symbol_of(str(error["loc"][1]))
         return Sentence("{symbol}: {advice}", {"symbol": symbol, "advice": refusal_of(error)})
     return refusal_of(error)
@@ -286,10 +323,22 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
         if path[: len(table)] == table:
             symbol, k = by_leaf.get("".join(path[len(table) :][:1])), index or 0
             return symbol.name if symbol else first, rows[k] if k < len(rows) else k
-    if path[:1] == ("tolerances",):
-        return TOLERANCE, None
+    if path[:1] == ("tolerances",) and len(path) > 1:
+        return _field_of(path[1], rows)
     if path in BY_PATH:
         return BY_PATH[path].name, index
     if path[:-1] in BY_PATH and BY_PATH[path[:-1]].name in BY_SIZE:
         return BY_PATH[path[:-1]].name, None
     return _PARTS.get(path, ".".join(path)), None
+
+
+def _field_of(path: str, rows: Sequence[int]) -> tuple[str, int | None]:
+    """Name and index of the field of a tolerance."""
+    try:
+        symbol, _, row = tolerances.symbol_of(path).partition(".")
+    except KeyError:
+        return TOLERANCE, None
+    if not row:
+        return f"{COLUMN}{symbol}", None
+    k = int(row) - 1
+    return f"{ROW}{symbol}", rows[k] if k < len(rows) else k

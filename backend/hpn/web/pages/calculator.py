@@ -38,7 +38,7 @@ from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
 from hpn.words.wording import N_, Sentence
 
-SECTIONS = ("overview", "bearing", "drive", "candidates", "compare", "calculation", "notes")
+SECTIONS = ("overview", "bearing", "drive", "candidates", "compare", "tolerance", "calculation", "notes")
 """The result by sections, in their order."""
 
 FIGURES = frozenset(("bearing_figure", "sizes_figure"))
@@ -158,7 +158,7 @@ def respond(request: Request, form: Form, *, first: bool = False, axis: AxisView
     form, answer = answered(form, catalogue, axis)
     changes = "hx-request" in request.headers
     # The page holds nothing that its address has not.
-    alone = not (form.focus or form.asides or form.bodies.given)
+    alone = not (form.focus or form.asides or form.bodies.given or (form.has_tolerances and form.is_exact))
     if answer and WRITTEN in request.query_params and not changes and alone:
         own = answer.condition.tail if form.condition else ""
         return RedirectResponse(
@@ -203,7 +203,7 @@ def _answer(application: Application, form: Form, catalogue: Catalogue, axis: Ax
     link_of = axis.link if axis else to_link
     link = link_of(application)
     judged = judge(application, catalogue)
-    selection = judged.selection(link_of)
+    selection = judged.selection(link_of, with_room=False)
     everything = {candidate.designation: candidate for candidate in (*selection.candidates, *judged.left_out())}
     gear = catalogue.find(form.gear or selection.foremost.designation)
     assert gear is not None  # `answered` refuses what the catalogue lacks

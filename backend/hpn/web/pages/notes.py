@@ -78,6 +78,7 @@ _NOTES: Mapping[str, tuple[Group, str, tuple[Action, ...]]] = {
     "shaft_load_of_motion": ("decide", _BEARING, (Action("press", "from_motion", N_("Count it")),)),
     "shaft_load_counted": ("assumed", _BEARING, ()),
     "stop_radial_above_limit": ("decide", _BEARING, ()),
+    "tolerances_of_motion_sampled": ("known", _MOTION, ()),
     "application_area": ("decide", _USE, ()),
     "emergency_stop_below_maximum": ("decide", _STOP, (_go("Tk"),)),
     "momentary_peak_count_unlimited": ("known", _STOP, ()),

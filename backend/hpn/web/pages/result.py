@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from hpn.account.account import Account
+from hpn.account.over_tolerance import DecidingLine, OverTolerance, WorstLine, over_tolerance
 from hpn.application import Application, RankBy
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.engine.candidates import Candidate
+from hpn.engine.candidates import Candidate, WorstCase
 from hpn.engine.checks import allowed
 from hpn.engine.remedy import Alternative, Growth, condition_of, growths_of, remedy_of
-from hpn.engine.room import Room
+from hpn.engine.room import with_tolerance
 from hpn.engine.selection import Selection
 from hpn.engine.tolerance_words import tolerance_of
 from hpn.engine.tried import needed_of
@@ -137,12 +138,41 @@ class Result:
         """Sentence on the chosen gear over the whole tolerance; None without tolerances."""
         return tolerance_of(self.chosen)
 
+    @cached_property
+    def over(self) -> OverTolerance | None:
+        """Account of the chosen gear over the tolerances; None without any."""
+        return over_tolerance(self.account)
+
+    @property
+    def worst_used(self) -> float | None:
+        """Utilisation of the chosen gear in its worst case; None without tolerances or a number."""
+        return self.chosen.worst.utilisation if isinstance(self.chosen.worst, WorstCase) else None
+
     @property
     def failing_case(self) -> str:
-        """Address of the case in which the selected gear fails inside its tolerances; blank for none."""
-        room, chosen = self.selection.tolerance, self.chosen.designation
-        fails = isinstance(room, Room) and not room.holds and chosen == self.selection.selected
-        return room.link if fails and isinstance(room, Room) else ""
+        """Address of the case in which the chosen gear fails inside its tolerances; blank for none."""
+        worst = self.chosen.worst
+        if not isinstance(worst, WorstCase) or worst.status != "unsuitable" or not self.over:
+            return ""
+        line = self.over.governing
+        return self.case(line) if line else ""
+
+    def case(self, line: WorstLine) -> str:
+        """Address of the case in which a check is worst."""
+        return self.links(line.corner.application) if line.corner else ""
+
+    def with_tolerance(self, line: DecidingLine) -> str:
+        """Address with a tolerance by the factor that lets the gear hold."""
+        assert self.application is not None
+        return self.links(with_tolerance(self.application, line.given.path, line.allowed or 0.0))
+
+    @property
+    def other_judgement(self) -> str:
+        """Address with gears judged by the worst case, or by the values as given where they are judged so."""
+        assert self.application is not None
+        asked = self.application.requirements
+        changed = asked.model_copy(update={"over_tolerance": not asked.over_tolerance})
+        return self.links(self.application.model_copy(update={"requirements": changed}))
 
     @property
     def utilisation(self) -> float:

@@ -27,11 +27,10 @@ from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
 from hpn.installed import data_folder, has_extra
 from hpn.links import symbols
-from hpn.links.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS
+from hpn.links.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS, ROWS_IN_TABLE
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
 from hpn.web.form import ways
-from hpn.web.form.form import ROWS_IN_TABLE
 from hpn.web.form.linked import carried_pairs, onward
 from hpn.web.pages import assets
 from hpn.web.pages.notes import head_and_reason, note_groups
@@ -276,6 +275,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "stiffness": _stiffness,
     "symbols": with_symbols,
     "t": _for_reader("text"),
+    "tolerance": pass_context(lambda _, line, factor=1.0: line.text(current(), factor)),
     "addition": pass_context(lambda _, step: mathml.addition(current(), step)),
     **{
         write.__name__: _as_mathml(write)
