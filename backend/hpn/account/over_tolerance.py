@@ -18,6 +18,17 @@ from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Named, Quantity, Sentence
 
 ALL_PHASES, ONE_PHASE, ONE_MOVE = N_("{quantity}, all phases"), N_("{quantity}, phase {k}"), N_("{quantity}, move {k}")
+MAY_GROW = N_("All tolerances may grow together: × {factor}.")
+MUST_SHRINK = N_("It holds up to × {factor} of all these tolerances.")
+HOLDS_WITH = N_("holds if the tolerance of {symbol} is at most {tolerance}")
+PROVED = N_("proved: at a corner of the tolerances, not by samples")
+SAMPLED = N_("≈ sampled, so that a worse case may lie between; the others are proved at a corner")
+SOME_FAIL = N_("Of {samples} cases at random {failing} fail: with 95 % confidence at most {share}.")
+NONE_FAILS = N_("Of {samples} cases at random none fails: with 95 % confidence fewer than {share} do.")
+SPREAD = N_(
+    "Each input is spread evenly over its tolerance, independent of the others; the worst case does not depend on that."
+)
+
 SHARE_SAMPLES = 4096
 """Cases at random that a page or a file looks at."""
 
@@ -156,15 +167,35 @@ class OverTolerance:
         return share_of(self.application, gear, catalogue, SHARE_SAMPLES) if gear and catalogue else None
 
     @property
-    def growth(self) -> Quantity | None:
-        """Factor by which all tolerances may grow together, rounded to the safe side."""
-        growth = self.room.growth if self.room else None
-        return None if growth is None else Quantity(growth, "", 3, "down")
+    def growth(self) -> Sentence | None:
+        """Sentence on how far all tolerances may grow together, rounded to the safe side; None without a limit."""
+        if self.room is None or self.room.growth is None:
+            return None
+        factor = Quantity(self.room.growth, "", 3, "down")
+        return Sentence(MAY_GROW if self.room.holds else MUST_SHRINK, {"factor": factor})
 
     @property
-    def most_failing(self) -> Quantity | None:
-        """Upper bound of the share of cases that fail."""
-        return Quantity(100 * self.share.upper, "percent", 2, "up") if self.share else None
+    def standing(self) -> Sentence:
+        """Note on what is proved and what is sampled."""
+        return Sentence(PROVED if all(line.is_exact for line in self.checks) else SAMPLED)
+
+    @property
+    def failing(self) -> tuple[Sentence, ...]:
+        """Sentences on the share of cases that fail, as a bound of it."""
+        if self.share is None:
+            return ()
+        bound = Quantity(100 * self.share.upper, "percent", 2, "up")
+        counts = {"samples": Quantity(self.share.samples, "", 6), "failing": Quantity(self.share.failing, "", 6)}
+        return Sentence(SOME_FAIL if self.share.failing else NONE_FAILS, {**counts, "share": bound}), Sentence(SPREAD)
+
+    @staticmethod
+    def remedy(line: "DecidingLine", reader: Reader) -> str:
+        """Tolerance of one input with which the gear holds, in words."""
+        values = {
+            "symbol": line.given.symbol or line.given.named.name,
+            "tolerance": line.given.text(reader, line.allowed or 0.0),
+        }
+        return reader.told(Sentence(HOLDS_WITH, values))
 
     @property
     def holding(self) -> list[DecidingLine]:

@@ -14,6 +14,7 @@ from hpn.files.export import Export, ExportTitle
 from hpn.files.report import plots, tables
 from hpn.files.report.checks import bases, checks
 from hpn.files.report.listing import listing
+from hpn.files.report.over_tolerance import tolerances
 from hpn.files.report.verdict import alternatives, verdict
 from hpn.files.words import catalogue_version, paper
 from hpn.words.reader import NOTHING, Reader
@@ -112,6 +113,7 @@ def parts(export: Export, reader: Reader) -> dict[str, Any]:
         "bearing": plots.envelope(pictures, reader),
         "bearing_alt": reader.text(N_("Loads of the phases within the envelopes of the output bearing")),
         "checks": checks(export, reader),
+        "tolerances": tolerances(export, reader),
         "ratings": tables.lines(account.published, reader),
         "alternatives": alternatives(export, reader),
         "basis": _basis(export, reader, on_motor),

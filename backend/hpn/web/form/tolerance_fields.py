@@ -36,7 +36,7 @@ OF_COLUMN: Mapping[str, str] = {
 }
 """Fields of single inputs and of columns, and the symbols of their inputs."""
 
-INPUT_OF: Mapping[str, str] = OF_COLUMN | OF_ROW
+INPUT_OF: Mapping[str, str] = {**OF_COLUMN, **OF_ROW}
 
 ASKED = ("u", "uw", "Lh", "Lb", "bl", "K3", "m", "L", "fn", "pe", "pem", "pr", "Jr", "nm", "Tm", "Tmn", "nmr")
 """Inputs that say what is asked of a gear or known of a motor: they get a field where they have a tolerance already."""

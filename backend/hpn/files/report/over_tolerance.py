@@ -1,0 +1,82 @@
+"""The page of the report on the tolerances: the worst case of each check, and which inputs decide."""
+
+from typing import Any
+
+from hpn.account.over_tolerance import DecidingLine, OverTolerance, WorstLine, over_tolerance
+from hpn.engine.tolerance_words import tolerance_of
+from hpn.files.export import Export
+from hpn.files.report.checks import bar, bounds, demand
+from hpn.words.reader import NOTHING, Reader
+from hpn.words.symbols import formula, sentence
+from hpn.words.wording import N_
+
+HEADS = (
+    N_("Check"),
+    N_("Worst"),
+    N_("as given"),
+    N_("Limit"),
+    N_("Utilisation"),
+    N_("as given"),
+    N_("Case that is worst"),
+)
+INPUT_HEADS = (N_("Input"), N_("Tolerance"), N_("Worst case, with it exact"), N_("Holds up to"))
+
+
+def tolerances(export: Export, reader: Reader) -> dict[str, Any] | None:
+    """Everything that the page sets; None without tolerances."""
+    over = over_tolerance(export.account)
+    said = tolerance_of(export.candidate)
+    if over is None or said is None:
+        return None
+    told = [reader.told(said), *([reader.told(over.growth)] if over.growth else [])]
+    remedies = [over.remedy(line, reader) for line in over.holding]
+    return {
+        "title": reader.text(N_("Over the whole tolerance")),
+        "told": sentence(" ".join(told)),
+        "remedies": [sentence(text) for text in remedies],
+        "standing": reader.told(over.standing),
+        "heads": [reader.text(head) for head in HEADS],
+        "checks": [_check(line, reader) for line in over.checks],
+        "input_heads": [reader.text(head) for head in INPUT_HEADS],
+        "inputs": _inputs(over, reader),
+        "failing": sentence(" ".join(map(reader.told, over.failing))),
+    }
+
+
+def _check(line: WorstLine, reader: Reader) -> dict[str, Any]:
+    given, reading = line.check.reading, line.reading
+    sides = [(reader.text(N_("high")), line.high), (reader.text(N_("low")), line.low)]
+    shown = bar(line.worst, line.bound, line.status, reader)
+    return {
+        **shown,
+        "utilisation": f"{'' if line.is_exact or line.worst is None else '≈ '}{shown['utilisation']}",
+        "title": sentence(reader.text(line.check.definition.title)),
+        "worst": demand(reading, reader) if reading else NOTHING,
+        "given": demand(given, reader),
+        "limit": f"{given.sign} {bounds(reading or given, reader)}",
+        "nominal": reader.percent(line.check.result.utilisation, line.bound),
+        "case": [[word, [formula(name) for name in names]] for word, names in sides if names],
+    }
+
+
+def _inputs(over: OverTolerance, reader: Reader) -> list[list[Any]]:
+    """Tolerances as they were given, those that decide first."""
+    deciding = {line.given.path: line for line in over.deciding}
+    worst = over.governing.worst if over.governing else None
+    given = sorted(
+        over.given, key=lambda line: [*deciding].index(line.path) if line.path in deciding else len(deciding)
+    )
+    rows = []
+    for line in given:
+        one = deciding.get(line.path)
+        exact = f"{_percent(worst, reader)} → {_percent(one.worst, reader)}" if one else NOTHING
+        rows.append([formula(line.symbol), reader.told(line.place), line.text(reader), exact, _up_to(one, reader)])
+    return rows
+
+
+def _up_to(one: DecidingLine | None, reader: Reader) -> str:
+    return one.given.text(reader, one.allowed) if one and one.allowed else NOTHING
+
+
+def _percent(share: float | None, reader: Reader) -> str:
+    return NOTHING if share is None else reader.percent(share)
