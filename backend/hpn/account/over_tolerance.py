@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from hpn.account.account import Account, CheckLine
-from hpn.account.readings import Reading, readings_of
+from hpn.account.readings import CheckReading, readings_of
 from hpn.application import Application
 from hpn.application.tolerances import Deviation, Interval, Tolerance
 from hpn.engine.checks import allowed
@@ -45,7 +45,7 @@ class WorstLine:
     bound: float
     is_exact: bool
     corner: Corner | None
-    reading: Reading | None
+    reading: CheckReading | None
     high: tuple[str, ...]
     low: tuple[str, ...]
 

@@ -11,14 +11,14 @@ from hpn.words.symbols import formula, sentence
 from hpn.words.wording import N_
 
 HEADS = (
-    N_("Check"),
-    N_("Worst"),
-    N_("as given"),
-    N_("Limit"),
-    N_("Utilisation"),
-    N_("as given"),
-    N_("Case that is worst"),
+    (N_("Check"), N_("Case that is worst")),
+    (N_("Worst"), N_("as given")),
+    (N_("Limit"), ""),
+    ("", ""),
+    (N_("Utilisation"), N_("as given")),
 )
+"""Heads of two lines each."""
+
 INPUT_HEADS = (N_("Input"), N_("Tolerance"), N_("Worst case, with it exact"), N_("Holds up to"))
 
 
@@ -35,7 +35,7 @@ def tolerances(export: Export, reader: Reader) -> dict[str, Any] | None:
         "told": sentence(" ".join(told)),
         "remedies": [sentence(text) for text in remedies],
         "standing": reader.told(over.standing),
-        "heads": [reader.text(head) for head in HEADS],
+        "heads": [[reader.text(line) if line else "" for line in head] for head in HEADS],
         "checks": [_check(line, reader) for line in over.checks],
         "input_heads": [reader.text(head) for head in INPUT_HEADS],
         "inputs": _inputs(over, reader),

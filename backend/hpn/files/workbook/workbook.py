@@ -2,6 +2,7 @@
 
 from io import BytesIO
 
+from hpn.account.over_tolerance import over_tolerance
 from hpn.account.readings import CheckReading
 from hpn.engine.tolerance_words import tolerance_of
 from hpn.files.export import Export
@@ -13,6 +14,8 @@ from hpn.files.workbook.sheet import LONGEST_TEXT, ROW_POINTS, VERDICT_STYLES, C
 from hpn.words.reader import Reader
 from hpn.words.terms import VERDICTS
 from hpn.words.wording import N_
+
+PROVED_WORD, SAMPLED_WORD = N_("proved"), N_("sampled")
 
 WIDTHS = (38, 18, 13, 13, 9, 11, 14, 30)
 """Columns of the first sheet in characters; the basis of each check stands behind them and is not printed."""
@@ -41,6 +44,7 @@ def _write_selection(sheet: SelectionSheet) -> None:
     sheet.lines(N_("Figures of the cycle"), account.cycle)
     sheet.lines(N_("Figures of the gear under the cycle"), account.figures)
     sheet.lines(N_("Published figures"), account.published)
+    _write_tolerances(sheet)
     _write_notes(sheet)
     sheet.page(WIDTHS, columns=len(WIDTHS))
 
@@ -112,6 +116,51 @@ def _write_checks(sheet: SelectionSheet) -> None:
         sheet.put(1, "u", "quiet")
         sheet.put(5, u, "share")
         sheet.row += 1
+
+
+WORST_HEADS = (
+    N_("Check"),
+    N_("Case that is worst"),
+    N_("Worst"),
+    N_("Limit"),
+    N_("Unit"),
+    N_("Utilisation"),
+    N_("Verdict"),
+    N_("Basis"),
+)
+INPUT_HEADS = (N_("Input"), N_("Tolerance"), N_("Worst case, with it exact"), N_("Holds up to"))
+
+
+def _write_tolerances(sheet: SelectionSheet) -> None:
+    """Write the worst case of each check, and the tolerances with what decides."""
+    over, reader = over_tolerance(sheet.export.account), sheet.reader
+    if over is None:
+        return
+    text = reader.text
+    sheet.heads(N_("Over the whole tolerance"), *map(text, WORST_HEADS), numbers=(2, 3, 5))
+    for line in over.checks:
+        sides = ((N_("high"), line.high), (N_("low"), line.low))
+        sheet.put(0, text(line.check.definition.title), "wrap")
+        sheet.put(1, "; ".join(f"{text(word)} {', '.join(names)}" for word, names in sides if names), "quiet")
+        for column, value in enumerate(_sides(sheet, line.reading) if line.reading else (), 2):
+            sheet.put(column, value, "figure")
+        sheet.put(4, reader.unit(line.check.reading.unit), "unit")
+        sheet.put(5, line.worst, "share")
+        sheet.put(6, text(VERDICTS[line.status]), VERDICT_STYLES[line.status])
+        sheet.put(7, text(PROVED_WORD if line.is_exact else SAMPLED_WORD), "quiet")
+        sheet.row += 1
+    deciding = {line.given.path: line for line in over.deciding}
+    sheet.heads(N_("Tolerances"), *map(text, INPUT_HEADS), numbers=(2,))
+    for given in over.given:
+        one = deciding.get(given.path)
+        sheet.put(0, reader.told(given.place))
+        sheet.put(1, given.text(reader), "quiet")
+        if one:
+            sheet.put(2, one.worst, "share")
+            sheet.put(3, given.text(reader, one.allowed) if one.allowed else "", "quiet")
+        sheet.row += 1
+    for sentence in (*([over.growth] if over.growth else []), *over.failing):
+        sheet.note(reader.told(sentence), WIDTHS)
 
 
 def _sides(sheet: SelectionSheet, reading: CheckReading) -> tuple[Cell, Cell]:

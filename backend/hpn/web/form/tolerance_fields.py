@@ -8,7 +8,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from hpn.links.rows import ROWS_IN_TABLE, Table
+from hpn.links.rows import ROWS_IN_TABLE, FormTable
 from hpn.links.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.links.tolerances import LONGEST, WRITTEN, Side, Sides, sides_of
 from hpn.tables.cells import DASHES
@@ -136,7 +136,7 @@ class Placed:
 
 def place(
     texts: Sequence[str],
-    table: Table,
+    table: FormTable,
     inputs: Collection[str],
     scalars: dict[str, str],
     single: dict[str, list[str]],
@@ -155,7 +155,7 @@ def place(
     return left
 
 
-def _in_row(table: Table, k: int, name: str, sides: Sides) -> bool:
+def _in_row(table: FormTable, k: int, name: str, sides: Sides) -> bool:
     """Set a tolerance into its row; False where that has no field for it, or it is taken."""
     fits = k < len(table.rows) <= ROWS_IN_TABLE and OF_ROW[name] in table.names
     if not fits or table.rows[k].get(name, "").strip():
@@ -165,7 +165,7 @@ def _in_row(table: Table, k: int, name: str, sides: Sides) -> bool:
     return True
 
 
-def fields(table: Table, scalars: Mapping[str, str]) -> Iterator[Placed]:
+def fields(table: FormTable, scalars: Mapping[str, str]) -> Iterator[Placed]:
     """Tolerances of all fields, those of rows by the rows that become phases or moves."""
     for name, text in scalars.items():
         if name in OF_COLUMN:
