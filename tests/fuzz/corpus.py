@@ -211,7 +211,7 @@ SUPPLEMENTS = (
 )
 """A file of a supplement each: its name in the first line, its content below."""
 
-OF_THE_PAGE = ("tol", "gear", "pin", "do", "phases", "written", "was")
+OF_THE_PAGE = ("tol", "tol_T", "tols_T", "tol_Tk", "exact", "gear", "pin", "do", "phases", "written", "was")
 SYMBOLS = tuple(
     b"&%s=" % name.encode()
     for name in (

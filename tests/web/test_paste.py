@@ -9,6 +9,8 @@ from starlette.testclient import TestClient
 
 from hpn.links.rows import ROWS_IN_TABLE
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
+from hpn.web.door.bodies import pairs_of
+from hpn.web.form.link_reader import parse
 from tests.web.paste import GERMAN, HTMX, LINK, LONG, cells, chosen, of, query_of
 
 
@@ -161,6 +163,19 @@ def test_adding_puts_the_phases_behind_those_there(client: TestClient) -> None:
     assert given["T"] == ["40", "32", "5"]
     assert given["FRi"] == ["", "", "300"]
     assert client.get(reply.headers["location"]).status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("take", "kept"), [("append", ["phases.1.torque_Nm", "torque_Nm"]), ("replace", ["torque_Nm"])]
+)
+def test_the_tolerance_of_a_phase_stays_with_it_and_goes_with_it(
+    client: TestClient, take: str, kept: list[str]
+) -> None:
+    link = f"{LINK}&tol=T:5p&tol=T.2:10p"
+    reply = client.post("/paste", data={"link": link, "text": "T\tn\tt\n5\t10\t1\n6\t20\t1", "take": take})
+    asked = parse(pairs_of(urlsplit(reply.headers["location"]).query)).application
+
+    assert asked is not None and sorted(asked.tolerances or ()) == kept
 
 
 @pytest.mark.parametrize(

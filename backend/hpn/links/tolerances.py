@@ -17,6 +17,7 @@ from hpn.words.wording import N_, Sentence
 LONGEST = 200
 WRITTEN = re.compile(r"([A-Za-z0-9]+)(?:\.([1-9][0-9]{0,4}))?:([^/:]+)(?:/([^/:]+))?")
 COLUMNS = (*PHASE_BY_LEAF, *MOVE_BY_LEAF)
+ORDER = {name: place for place, name in enumerate((*PHASE_BY_NAME, *BY_NAME))}
 MOVES = ".".join((*MOTION_PATH[1:], "moves"))
 
 NO_TOLERANCE = N_("must be a symbol and its tolerance, such as T:10p, T.2:0.5 or Jm:0p/15p")
@@ -98,17 +99,17 @@ def _path(place: Sequence[str]) -> str:
 
 
 def written(application: Application) -> Iterator[str]:
-    """Tolerances of an application as a link has them: those of one row behind the others, row by row."""
+    """Tolerances of an application as a link has them, in the order of symbols; those of one row last, row by row."""
     for path, tolerance in sorted((application.tolerances or {}).items(), key=lambda each: _order(each[0])):
         yield text_of(path, tolerance)
 
 
 def _order(path: str) -> tuple[int, int]:
-    """Row of a path, -1 for none, and its column."""
+    """Row of a path, -1 for none, and its place among the symbols."""
     *_, row, field = ("", *path.split("."))
-    if not row.isdigit():
-        return -1, 0
-    return int(row), COLUMNS.index(field) if field in COLUMNS else 0
+    if row.isdigit():
+        return int(row), COLUMNS.index(field) if field in COLUMNS else 0
+    return -1, ORDER.get(symbol_of(path), 0)
 
 
 def text_of(path: str, tolerance: Tolerance) -> str:

@@ -17,7 +17,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import pointer, sentence_of
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
-from hpn.links.rows import TEXT, filled, used_columns
+from hpn.links.rows import TEXT, TOLERANCE, filled, used_columns
 from hpn.links.symbols import BY_NAME, PHASE_BY_NAME
 from hpn.links.writer import to_link
 from hpn.tables.files import TableBounds, packed, tidied, unpacked
@@ -35,6 +35,7 @@ from hpn.web.door.visit import current
 from hpn.web.form import link_reader
 from hpn.web.form.given import CYCLE_NAMES, Given, Pairs
 from hpn.web.form.linked import query_part
+from hpn.web.form.tolerance_fields import OF_ROW
 from hpn.web.pages import calculator
 from hpn.web.pages.axis_view import OF_AXIS, PLACE, place_of
 from hpn.web.pages.reading import read
@@ -195,6 +196,8 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     if stop := draft.table.stop_Nm:
         dropped |= {name for name, symbol in BY_NAME.items() if symbol.path[0] == "emergency_stop" and name != "Nk"}
     rest = [(name, value) for name, value in given.beside() if name not in dropped]
+    if not append:  # a tolerance of one phase goes with it
+        rest = [(name, value) for name, value in rest if name != TOLERANCE]
     rest += [("Tk", stop)] if stop else []
     names = draft.table.names or ("",) * len(draft.table.phases)
     named = zip(names, draft.table.phases, strict=True)
@@ -202,7 +205,8 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     if append:
         rows = [*filter(filled, given.phases.rows), *rows]
     used = {name for row in rows for name, text in row.items() if text}
-    return [(name, row.get(name, "")) for row in rows for name in used_columns(PHASE_BY_NAME, used)] + rest
+    columns = [*used_columns(PHASE_BY_NAME, used), *(name for name in OF_ROW if name in used)]
+    return [(name, row.get(name, "")) for row in rows for name in columns] + rest
 
 
 def _proceed(request: Request, pairs: Pairs) -> Response:

@@ -158,8 +158,8 @@ class Result:
         return self.case(line) if line else ""
 
     def case(self, line: WorstLine) -> str:
-        """Address of the case in which a check is worst."""
-        return self.links(line.corner.application) if line.corner else ""
+        """Address of the case in which a check is worst, with the gear in sight, which others may outrank there."""
+        return f"{self.links(line.corner.application)}&gear={self.chosen.designation}" if line.corner else ""
 
     def with_tolerance(self, line: DecidingLine) -> str:
         """Address with a tolerance by the factor that lets the gear hold."""
