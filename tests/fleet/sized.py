@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
+from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
-from hpn.fleet.machine import kept_of
 from hpn.store import MachineDraft
-from hpn.web.pages.machine_answers import draft_of
+from hpn.web.axis_tables import drafts_in
 from tests.fleet.tables import Row
 
 
 def machine_draft(rows: Sequence[Row], catalogue: Catalogue) -> MachineDraft:
     """Machine of rows as it is kept."""
-    return draft_of(kept_of(rows, (), {}, catalogue), catalogue)
+    return MachineDraft(drafts_in(rows, (), {}, catalogue), ENGINE_VERSION, catalogue.version)

@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 from hpn.documents.axis import Axis
 from hpn.documents.revision import Frozen
 from hpn.fleet import machine_axes
-from hpn.fleet.columns import COLUMNS
+from hpn.fleet.columns import COLUMNS, OF_MACHINE
 from hpn.fleet.opened import open_axes
 from tests.build import TURNING, Json, cycle, phase, worked_example
 from tests.machines import COMMON, axis, frozen, packing_line
@@ -35,7 +35,7 @@ def rows_of(path: Path, write: Any, document: Frozen) -> list[Json]:
     """Rows of a written table as the reader of fleets' tables gives them, beside the machine's own columns."""
     path.write_bytes(write(document))
     whole = machine_axes.table_of(document)
-    own = whole.select([name for name in machine_axes.OF_MACHINE if name in whole.column_names])
+    own = whole.select([name for name in OF_MACHINE if name in whole.column_names])
     table = open_axes(path, own.column_names)
     rows = [row for batch in table.batches() for row in batch.rows.to_pylist()]
     return [row | more for row, more in zip(rows, own.to_pylist(), strict=True)]
@@ -58,7 +58,7 @@ def test_written_axes_are_read_as_the_same_axes(
 def test_what_fits_into_columns_needs_no_rest(catalogue: Catalogue) -> None:
     table = machine_axes.table_of(frozen(packing_line(), catalogue, COMMON))
     assert "rest" not in table.column_names
-    assert table.num_rows == 40 and set(table.column_names) <= {"axis", *machine_axes.OF_MACHINE, *COLUMNS.all}
+    assert table.num_rows == 40 and set(table.column_names) <= {"axis", *OF_MACHINE, *COLUMNS.all}
 
 
 def test_a_machine_without_axes_is_a_table_without_rows(catalogue: Catalogue) -> None:

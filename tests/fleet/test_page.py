@@ -20,10 +20,10 @@ from hpn.engine.selection import select
 from hpn.links.writer import to_link
 from hpn.tables.files import NO_TEXT
 from hpn.tables.reading import Reading, reading_of
+from hpn.web.axis_tables import WANTED
 from hpn.web.columns import answer_in
 from hpn.web.pages import machine_answers
 from hpn.web.pages.answer_files import file_of
-from hpn.web.pages.upload_bounds import WANTED
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 from tests.fleet.page import GERMAN, HEAVY, HUB, fields_of, post

@@ -6,8 +6,8 @@ import pytest
 
 from hpn.catalogue import Catalogue
 from hpn.fleet.faults import CellFault, kept, reasons_of
-from hpn.fleet.machine import batch_of, kept_of, table_of
-from hpn.fleet.outcome import outcome
+from hpn.web.axis_tables import drafts_in
+from hpn.web.columns import answer_in
 from hpn.words.reader import Reader
 from tests.fleet.conftest import Size
 
@@ -50,11 +50,15 @@ CELLS = (
 
 def test_every_reason_has_a_german_text(catalogue: Catalogue) -> None:
     axes = [{"axis": str(place), **SOUND, **wrong} for place, wrong in enumerate(WRONG)]
-    rejected = outcome(batch_of([{"axis": "sound", **SOUND}, *axes]), catalogue)["answers"].to_pylist()
+    sound, *drafts = drafts_in([{"axis": "sound", **SOUND}, *axes], (), {}, catalogue)
 
-    assert [row["axis"] for row in rejected if not row["error"]] == ["sound"]
-    for row in rejected[1:]:
-        assert_told(row)
+    assert sound.answer["status"] == "suitable"
+    for draft in drafts:
+        faults = answer_in(draft.answer).faults
+        assert faults and draft.answer["status"] == "open", draft
+        for fault in faults:
+            assert Reader("de").told(fault.told) != fault.told.text
+            assert fault.code
 
 
 def test_every_reason_of_a_file_has_a_german_text(size: Size, catalogue: Catalogue) -> None:
@@ -86,13 +90,14 @@ def test_a_text_that_an_earlier_version_has_kept_is_shown_as_it_is() -> None:
 
 
 def test_a_reason_is_kept_with_its_values(catalogue: Catalogue) -> None:
-    found = kept_of([{"axis": "a", **SOUND, "speed_rpm": [250.0, "x; n: 5"]}], (), {"a": (7, 9)}, catalogue)
-    (cell,) = table_of(found.answers)["faults"].to_pylist()
-    (reason,) = reasons_of(cell)
+    wrong = {"axis": "a", **SOUND, "speed_rpm": [250.0, "x; n: 5"]}
+    (draft,) = drafts_in([wrong], (), {"a": (7, 9)}, catalogue)
+    (fault,) = answer_in(draft.answer).faults
 
-    assert kept([CellFault(0, reason.column, reason.sentence, reason.code)]) == cell
-    assert reason.sentence.text == 'row 9: must be a number, such as 9.3, not "x;n: 5"'
-    assert Reader("de").told(reason.sentence) == 'Zeile 9: muss eine Zahl sein, z. B. 9.3, nicht "x;n: 5"'
+    assert fault.told.text == 'row 9: must be a number, such as 9.3, not "x;n: 5"'
+    assert Reader("de").told(fault.told) == 'Zeile 9: muss eine Zahl sein, z. B. 9.3, nicht "x;n: 5"'
+    (reason,) = reasons_of(kept([CellFault(0, "speed_rpm", fault.told, fault.code)]))
+    assert reason.sentence == fault.told
 
 
 @pytest.mark.parametrize("bad", [2.5, float("nan"), 1e300, None])

@@ -8,7 +8,8 @@ import pytest
 from pypdf import PdfReader
 from starlette.testclient import TestClient
 
-from hpn.fleet.machine_axes import OF_MACHINE, axis_of
+from hpn.fleet.columns import OF_MACHINE
+from hpn.fleet.machine_axes import axis_of
 from tests.build import worked_example
 from tests.machines import COMMON, axis
 

@@ -7,9 +7,11 @@ from typing import Any, NamedTuple
 from hpn.catalogue import Catalogue
 from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError, Order
+from hpn.tables.answers import about, answers_of
 from hpn.tables.columns import NO_CHOICES, Choices
 from hpn.tables.files import TableBounds, text_of
 from hpn.tables.reading import Reading, reading_of
+from hpn.words.wording import Sentence
 
 
 class Sized(NamedTuple):
@@ -73,3 +75,15 @@ def read_machine(
     except FleetError as error:
         return MachineReading(reading=reading, refusal=str(error).replace(NAME + reading.suffix, NAME))
     return MachineReading(reading=reading, rows=given.rows, faults=given.faults, axes=given.axes, phases=given.phases)
+
+
+def read_answered(
+    content: bytes, wanted: TableBounds, given: Sequence[str]
+) -> tuple[MachineReading, tuple[Sentence, ...]]:
+    """Reading of a file by answers of a program, and what is wrong with these; no unit is assumed."""
+    answers = answers_of(given)
+    read = read_machine(content, wanted, answers.whole)
+    if read.reading.table is not None and answers.columns:
+        answers = about(read.reading.table.columns, answers, wanted.inputs)
+        read = read_machine(content, wanted, answers.whole)
+    return read, answers.faults

@@ -18,7 +18,7 @@ import pyarrow as pa
 import pyarrow.types as kinds
 
 from hpn.application.faults import Location
-from hpn.application.input_fields import FIELDS, PHASE_FIELDS, PHASE_FIGURES, InputField
+from hpn.application.input_fields import FIELDS, PHASE_FIELDS, PHASE_FIGURES, InputField, Kind
 from hpn.application.unique import require_unique
 from hpn.fleet.faults import OF_ITEM, OF_PHASE, OF_SIZE
 from hpn.fleet.uuids import is_uuid
@@ -210,10 +210,14 @@ def _phases(row: Mapping[str, Any], columns: Mapping[str, InputColumn]) -> list[
 
 
 def _plain(value: Any, column: InputColumn) -> Any:
-    """A cell as the models take it: any kind of number as a float, of a text by size what it says in JSON."""
+    """A cell as the models take it: any kind of number as a float, of a text by size what it says in JSON.
+
+    What a page has read of a cell may be a text where a number belongs, which the models refuse.
+    """
     if column.by_size and isinstance(value, str):
         return _by_size(value)
-    return value if column.kind in ("string", "boolean") or value is None else float(value)
+    is_number = isinstance(value, float | int) and not isinstance(value, bool)
+    return float(value) if is_number and column.kind not in ("string", "boolean") else value
 
 
 def _by_size(text: str) -> Any:
@@ -244,14 +248,37 @@ COLUMNS = Columns(
 """Columns of the models."""
 
 
+def _of_machine(name: str, kind: Kind, *, is_list: bool = False) -> InputColumn:
+    bounds: Json = {"default": None, "least": -math.inf, "most": math.inf, "above": -math.inf, "choices": None}
+    return InputColumn(name=name, path=(name,), kind=kind, is_list=is_list, required=False, **bounds)
+
+
+OF_MACHINE: Mapping[str, InputColumn] = {
+    "axis_name": _of_machine("axis_name", "string"),
+    "quantity": _of_machine("quantity", "integer"),
+    "note": _of_machine("note", "string"),
+    "ordering_code": _of_machine("ordering_code", "string"),
+    "without": _of_machine("without", "string", is_list=True),
+    "rest": _of_machine("rest", "string"),
+}
+"""Columns that the table of a machine has beside those of `hpn fleet`: what only a machine has of an axis."""
+
+LONG_TEXTS = ("note", "rest")
+"""Those whose texts the model of an axis bounds."""
+
+MACHINE = ColumnsByName({**COLUMNS.all, **OF_MACHINE})
+"""Columns of the table of a machine."""
+
+
 INDEX = re.compile("__index_level_[0-9]+__")
 """Name that pandas gives an index without one."""
 
 
 def are_taken(names: Sequence[str], is_in_list_form: bool) -> bool:
-    """True for columns that the command knows, an index of pandas among them; long form with other columns is read as a
-    table of cells, in which `20A` and `4/5` are lists."""
-    known = {AXIS, *COLUMNS.phases, *(COLUMNS.others if is_in_list_form else ())}
+    """True for columns of a machine that the reader of fleets knows, an index of pandas among them; long form with
+    other columns is read as a table of cells, in which `20A` and `4/5` are lists."""
+    is_in_list_form = is_in_list_form or "axis_name" in names  # of a machine whose first axis has no phases
+    known = {AXIS, *COLUMNS.phases, *((*COLUMNS.others, *OF_MACHINE) if is_in_list_form else ())}
     known |= {name for name in names if is_in_list_form and tolerance_column(name)}
     given = {name for place, name in enumerate(names) if not INDEX.fullmatch(name) and (place or name)}
     return {AXIS, "torque_Nm"} <= given <= known

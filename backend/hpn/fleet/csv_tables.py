@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 import pyarrow.csv as pacsv
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, INDEX, NUMBER, InputColumn, is_list
+from hpn.fleet.columns import AXIS, INDEX, NUMBER, InputColumn, is_list
 from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError
 from hpn.fleet.tables import AxisTable, Progress, RowBatch
@@ -136,8 +136,8 @@ class CsvTable(AxisTable):
 
     @cached_property
     def is_in_list_form(self) -> bool:
-        if "torque_Nm" not in self.names:
-            return False
+        if "torque_Nm" not in self.names or "axis_name" in self.names:
+            return "torque_Nm" in self.names  # a machine's axes are rows, and any of them may have no phases
         batches = self._texts(["torque_Nm"])
         first = next((cells[0].as_py() for batch in batches if len(cells := batch.rows[0].drop_null())), None)
         return first is not None and bool(first.lstrip().startswith("["))
@@ -185,7 +185,7 @@ class CsvTable(AxisTable):
             faults, broken = list(texts.faults), {fault.row for fault in texts.faults}
             columns = []
             for name in self.names:
-                column, wrong = _parsed(texts.rows[name].combine_chunks(), COLUMNS.all.get(name), self.type_of(name))
+                column, wrong = _parsed(texts.rows[name].combine_chunks(), self.columns.get(name), self.type_of(name))
                 columns.append(column)
                 faults += (CellFault(row, name, *reason) for row, reason in wrong if row not in broken)
             yield RowBatch(pa.Table.from_arrays(columns, names=list(self.names)), faults)

@@ -1,9 +1,7 @@
-"""Axes as plain data, as a page has them: out of a table that `hpn fleet` takes, and their answers to be kept."""
+"""Axes of a machine out of a table: of one that `hpn fleet` takes as plain data, and of such rows as axes."""
 
 import io
-import json
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,23 +9,25 @@ import msgspec
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
+from pydantic import ValidationError
 
-from hpn.catalogue import Catalogue
-from hpn.fleet.columns import AXIS, COLUMNS, InputColumn
+from hpn.application.faults import REQUIRED, Location, sentences_of
+from hpn.documents.axis import MOST_OF_A_KIND, Axis
+from hpn.fleet.columns import AXIS, COLUMNS, MACHINE, InputColumn
 from hpn.fleet.csv_tables import cut, no_list
 from hpn.fleet.faults import OF_ITEM, OF_PHASE, TWICE, CellFault, of_phase
 from hpn.fleet.gathering import axes_of
-from hpn.fleet.listing import with_nearest
+from hpn.fleet.machine_axes import axis_of
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import MOST_AXES, MOST_PHASES
-from hpn.fleet.outcome import outcome
-from hpn.fleet.summary import AxisCounts, summary_of
-from hpn.fleet.tables import RowBatch, with_short_texts
+from hpn.fleet.outcome import faults_of_lists
+from hpn.words.titles import LONGEST_NAME
 from hpn.words.wording import N_, Sentence
 
-Axis = Mapping[str, Any]
+Cells = Mapping[str, Any]
 """An axis in list form, by the names of columns."""
 
+NO_QUANTITY = N_("must be a whole number from 1 to {most}")
 OF_ROW = N_("row {number}: {reason}")
 RIGHT: Mapping[str, tuple[Any, str, str]] = {
     "string": (str, N_("must be text, not {found}"), "string_type"),
@@ -52,54 +52,93 @@ class MachineRows(NamedTuple):
 def given_of(content: bytes, name: str) -> MachineRows:
     """Axes of a table under a name with its suffix; raises FleetError."""
     rows, faults, axes, phases = list[dict[str, Any]](), list[CellFault](), 0, 0
-    for batch in axes_of(open_axes(Path(name), (), content)):
+    for batch in axes_of(open_axes(Path(name), (), content, MACHINE)):
         phases += sum(pc.list_value_length(batch.rows["torque_Nm"]).fill_null(0).to_pylist())
         if axes + batch.rows.num_rows <= MOST_AXES and phases <= MOST_PHASES:
             names = batch.rows[AXIS].cast(pa.string())
             table = batch.rows.set_column(batch.rows.column_names.index(AXIS), AXIS, names)
-            rows += ({name: cell for name, cell in row.items() if cell is not None} for row in table.to_pylist())
+            for row in table.to_pylist():
+                rows.append({name: cell for name, cell in row.items() if cell is not None or name == "axis_name"})
             faults += (fault.moved(axes) for fault in batch.faults)
         axes += batch.rows.num_rows
     return MachineRows(rows, faults, axes, phases)
 
 
-# --- Answers ----------------------------------------------------------------------------------------------------------
+# --- Axes of a machine ------------------------------------------------------------------------------------------------
 
 
-class Kept(NamedTuple):
-    """A machine to be kept: counts of its axes, and tables of answers and inputs as Parquet."""
+class TableAxis(NamedTuple):
+    """An axis of a table under its name there, and what is wrong with its cells."""
 
-    summary: AxisCounts
-    answers: bytes
-    axes: bytes
-
-
-def kept_of(
-    axes: Sequence[Axis], faults: Sequence[CellFault], origins: Mapping[str, Sequence[int]], catalogue: Catalogue
-) -> Kept:
-    """Answers to axes; `origins` are the rows of a table of cells that the phases of an axis stand in."""
-    batch = _once(batch_of(axes, faults))
-    names = batch.rows[AXIS].to_pylist()
-
-    def placed(fault: CellFault) -> CellFault:
-        """A fault by the row of the table in place of its phase."""
-        numbers, reason = origins.get(names[fault.row] or "", ()), fault.reason
-        place = int(str(reason.values["number"])) - 1 if reason.template == OF_PHASE else len(numbers)
-        if place >= len(numbers):
-            return fault
-        values = {**reason.values, "number": str(numbers[place])}
-        return fault._replace(reason=Sentence(OF_ROW, values))
-
-    answers = outcome(batch, catalogue, placed=placed)["answers"]
-    asked = batch.rows.filter(pc.is_valid(answers["suitable"]))
-    shown = with_nearest(answers, asked, catalogue).drop_columns("error")  # which is what is shown of the reasons
-    return Kept(summary_of(answers.to_batches()), as_parquet(shown), as_parquet(asked))
+    axis: Axis
+    name: str | None
+    faults: Sequence[CellFault] = ()
 
 
-def answers_today(asked: bytes, catalogue: Catalogue) -> list[dict[str, Any]]:
-    """Answers to the inputs that were kept."""
-    rows: list[dict[str, Any]] = outcome(RowBatch(table_of(asked)), catalogue)["answers"].to_pylist()
-    return rows
+def axes_in(rows: Sequence[Cells], faults: Sequence[CellFault] = ()) -> list[TableAxis]:
+    """Axes of the rows of a table, each once; one of which a cell is lost has nothing but its name."""
+    lost = dict[int, list[CellFault]]()
+    for fault in faults:
+        lost.setdefault(fault.row, []).append(fault)
+    places = dict[str, list[int]]()
+    for place, row in enumerate(rows):
+        places.setdefault(row.get(AXIS) or f" {place}", []).append(place)
+    return [_once(rows, found, lost) for found in places.values()]
+
+
+def _once(rows: Sequence[Cells], places: Sequence[int], lost: Mapping[int, Sequence[CellFault]]) -> TableAxis:
+    """The axis of a name, which rows that are not together are torn into."""
+    place = places[0]
+    row, faults = rows[place], lost.get(place, ())
+    if len(places) > 1:
+        faults = (CellFault(place, AXIS, TWICE, "repeated"),)
+    return _axis(row, place, list(faults))
+
+
+def _axis(row: Cells, place: int, faults: list[CellFault]) -> TableAxis:
+    is_of_machine = "axis_name" in row  # its axes are numbered, and need no name
+    name = row["axis_name"] if is_of_machine else row.get(AXIS) or None
+    if not faults and not is_of_machine:
+        missing = [] if name is not None else [CellFault(place, AXIS, Sentence(REQUIRED), "missing")]
+        faults = missing + [CellFault(place, *fault) for fault in faults_of_lists(row)]
+    if not _is_quantity(row.get("quantity", 1.0)):
+        faults = [
+            *faults,
+            CellFault(place, "quantity", Sentence(NO_QUANTITY, {"most": f"{MOST_OF_A_KIND}"}), "quantity"),
+        ]
+    if not faults:
+        try:
+            return TableAxis(axis_of(row), name, wrong_cells(row, place))
+        except ValidationError as error:
+            faults = [CellFault(place, _column(at), sentence, code) for at, sentence, code in sentences_of(error)]
+    return TableAxis(Axis(), name[:LONGEST_NAME] if is_of_machine and name else name, faults)
+
+
+def _is_quantity(cell: Any) -> bool:
+    return isinstance(cell, float | int) and cell in range(1, MOST_OF_A_KIND + 1)
+
+
+def _column(location: Location) -> str:
+    """Column of a field of an axis."""
+    return "axis_name" if location[0] == "name" else str(location[0])
+
+
+def wrong_cells(row: Cells, place: int) -> list[CellFault]:
+    """Faults of cells that their column does not take."""
+    found = ((name, _wrong(cell, MACHINE[name])) for name, cell in row.items() if name in MACHINE)
+    return [CellFault(place, name, *wrong) for name, wrong in found if wrong]
+
+
+def in_row(fault: CellFault, numbers: Sequence[int]) -> CellFault:
+    """A fault by the row of the table in place of its phase, where the phases of its axis stand in such rows."""
+    reason = fault.reason
+    phase = int(str(reason.values["number"])) - 1 if reason.template == OF_PHASE else len(numbers)
+    if phase >= len(numbers):
+        return fault
+    return fault._replace(reason=Sentence(OF_ROW, {**reason.values, "number": str(numbers[phase])}))
+
+
+# --- Tables that are kept ---------------------------------------------------------------------------------------------
 
 
 def as_parquet(table: pa.Table) -> bytes:
@@ -109,45 +148,25 @@ def as_parquet(table: pa.Table) -> bytes:
     return sink.getvalue()
 
 
-def table_of(content: bytes) -> pa.Table:
-    """A table that was kept."""
-    return pq.read_table(io.BytesIO(content))
+# --- Cells ------------------------------------------------------------------------------------------------------------
 
 
-# --- From plain data to columns ---------------------------------------------------------------------------------------
-
-
-def batch_of(axes: Sequence[Axis], faults: Sequence[CellFault] = ()) -> RowBatch:
-    """Axes as columns; a cell that its column does not take is a fault."""
-    columns, found = {AXIS: pa.array([axis[AXIS] or None for axis in axes], pa.string())}, list(faults)
-    for name, column in COLUMNS.all.items():
-        if column.required or any(name in axis for axis in axes):
-            cells = [axis.get(name) for axis in axes]
-            if column.by_size:  # texts, of which each is a number or an object; the models say what is neither
-                cells = [cell if cell is None or isinstance(cell, str) else json.dumps(cell) for cell in cells]
-            for row, wrong in _wrong(cells, column):
-                found.append(CellFault(row, name, *wrong))
-                cells[row] = None
-            columns[name] = pa.array(cells, column.type)
-    return with_short_texts(RowBatch(pa.table(columns), found))
-
-
-def _wrong(cells: Sequence[Any], column: InputColumn) -> Iterator[tuple[int, tuple[Sentence, str]]]:
-    """Rows of cells that a column does not take, with what would be right and a code."""
-    kind, template, code = RIGHT.get("string" if column.by_size else column.kind, NUMBER)
-    for row, cell in enumerate(cells):
-        wanted: Any = list[kind | None] if column.is_list else kind  # type: ignore[valid-type]
-        if cell is None or _is(cell, wanted):
-            continue
-        if not column.is_list:
-            yield row, (_told(template, cell), code)
-        elif not isinstance(cell, list | tuple):
-            yield row, no_list(column)
-        else:
-            place, item = next(each for each in enumerate(cell, 1) if each[1] is not None and not _is(each[1], kind))
-            told = _told(template, item)
-            of_item = Sentence(OF_ITEM, {"number": str(place), "reason": told})
-            yield row, (of_phase(place, told) if column.name in COLUMNS.phases else of_item, code)
+def _wrong(cell: Any, column: InputColumn) -> tuple[Sentence, str] | None:
+    """Reason and code for a cell that its column does not take; None for one that it takes, and for none."""
+    if column.by_size and not column.is_list:  # a number or an object; the models say what is neither
+        return None
+    kind, template, code = RIGHT.get(column.kind, NUMBER)
+    wanted: Any = list[kind | None] if column.is_list else kind  # type: ignore[valid-type]
+    if cell is None or _is(cell, wanted):
+        return None
+    if not column.is_list:
+        return _told(template, cell), code
+    if not isinstance(cell, list | tuple):
+        return no_list(column)
+    place, item = next(each for each in enumerate(cell, 1) if each[1] is not None and not _is(each[1], kind))
+    told = _told(template, item)
+    of_item = Sentence(OF_ITEM, {"number": str(place), "reason": told})
+    return (of_phase(place, told) if column.name in COLUMNS.phases else of_item), code
 
 
 def _told(template: str, cell: Any) -> Sentence:
@@ -160,19 +179,3 @@ def _is(value: Any, kind: Any) -> bool:
     except msgspec.ValidationError:
         return False
     return True
-
-
-def _once(batch: RowBatch) -> RowBatch:
-    """Axes of which each is there once, where it comes first; one that was there again is a fault."""
-    names = batch.rows[AXIS].to_pylist()
-    counts = Counter(name for name in names if name is not None)
-    if len(names) == len(counts):
-        return batch
-    first = {name: place for place, name in reversed(list(enumerate(names)))}
-    places = [place for place, name in enumerate(names) if name is None or first[name] == place]
-    moved = {place: row for row, place in enumerate(places)}
-    torn = {row for place, row in moved.items() if counts[names[place]] > 1}
-    own = [fault for fault in batch.faults if fault.row in moved and moved[fault.row] not in torn]
-    faults = [fault._replace(row=moved[fault.row]) for fault in own]
-    faults += (CellFault(row, AXIS, TWICE, "repeated") for row in sorted(torn))
-    return RowBatch(batch.rows.take(pa.array(places, pa.int64())), faults)

@@ -12,25 +12,20 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.csv as pacsv
 import pyarrow.parquet as pq
+from pydantic import ValidationError
+from pydantic_core import InitErrorDetails, PydanticCustomError, from_json
 
+from hpn.application.unique import require_unique
 from hpn.documents.axis import Axis
 from hpn.documents.revision import Frozen, FrozenAxis
-from hpn.fleet.columns import AXIS, COLUMNS, InputColumn, is_list
+from hpn.fleet.columns import AXIS, COLUMNS, MACHINE, OF_MACHINE, InputColumn, is_list
 from hpn.fleet.tables import LONGEST_TEXT
+from hpn.words.wording import N_
 
 Json = dict[str, Any]
 
-OF_MACHINE: Mapping[str, pa.DataType] = {
-    "axis_name": pa.string(),
-    "quantity": pa.int64(),
-    "note": pa.string(),
-    "ordering_code": pa.string(),
-    "without": pa.list_(pa.string()),
-    "rest": pa.string(),
-}
-"""Columns that a table of a fleet has not."""
-
 LARGEST = 1e300
+NO_OBJECT = N_("must be a JSON object")
 
 
 def table_of(document: Frozen) -> pa.Table:
@@ -38,8 +33,9 @@ def table_of(document: Frozen) -> pa.Table:
     rows = [_row(axis) for axis in document.axes]
     used = {name for row in rows for name, value in row.items() if value is not None}
     required = [name for name, column in COLUMNS.phases.items() if column.required]
-    kinds = {AXIS: pa.int64(), **OF_MACHINE, **{name: column.type for name, column in COLUMNS.all.items()}}
-    shown = [(name, kind) for name, kind in kinds.items() if name in used or name in (AXIS, *required)]
+    kinds = {AXIS: pa.int64(), **{name: MACHINE[name].type for name in (*OF_MACHINE, *COLUMNS.all)}}
+    kinds["quantity"] = pa.int64()
+    shown = [(name, kind) for name, kind in kinds.items() if name in used or name in (AXIS, "axis_name", *required)]
     return pa.Table.from_pylist(rows, pa.schema(shown))
 
 
@@ -69,13 +65,32 @@ def axis_of(row: Mapping[str, Any]) -> Axis:
     if not application["duty_cycle"]:
         del application["duty_cycle"]
     own = {name: row.get(name) for name in ("note", "ordering_code")}
+    quantity = row.get("quantity")
     return Axis(
         name=row.get("axis_name"),
-        quantity=row.get("quantity") or 1,
+        quantity=1 if quantity is None else _whole(quantity),
         without=tuple(row.get("without") or ()),
-        application=_joined(application, json.loads(row["rest"])) if row.get("rest") else application,
+        application=_joined(application, _rest(row["rest"])) if row.get("rest") else application,
         **own,
     )
+
+
+def _whole(number: Any) -> Any:
+    """A whole number as an integer; the model refuses any other value."""
+    return int(number) if isinstance(number, float) and number.is_integer() else number
+
+
+def _rest(text: str) -> Json:
+    """Object of the column `rest`; raises ValidationError for any other text."""
+    try:
+        require_unique(text.encode(errors="replace"))
+        found = from_json(text, allow_inf_nan=False)
+    except (ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        entry = InitErrorDetails(type=PydanticCustomError("rest", NO_OBJECT), loc=("rest",), input=text)
+        raise ValidationError.from_exception_data(Axis.__name__, [entry])
+    return found
 
 
 def _joined(one: Json, other: Json) -> Json:

@@ -2,10 +2,10 @@
 
 import stat
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from hpn.fleet.columns import AXIS, COLUMNS, tolerance_column
+from hpn.fleet.columns import AXIS, COLUMNS, InputColumn, tolerance_column
 from hpn.fleet.csv_tables import CsvTable, GzipCsvTable
 from hpn.fleet.order import FleetError, status_of, suffix_of, wrong_encoding
 from hpn.fleet.tables import AxisTable
@@ -26,7 +26,12 @@ MOST_PROBLEMS = 20
 """Wrong columns that an error names."""
 
 
-def open_axes(path: Path, ignored: Sequence[str] = (), content: bytes | None = None) -> AxisTable:
+def open_axes(
+    path: Path,
+    ignored: Sequence[str] = (),
+    content: bytes | None = None,
+    columns: Mapping[str, InputColumn] = COLUMNS.all,
+) -> AxisTable:
     """The table of phases or of axes in a file, or in bytes under its name; raises FleetError for columns that are
     missing, unknown or of a wrong type."""
     suffix = suffix_of(path)
@@ -34,10 +39,10 @@ def open_axes(path: Path, ignored: Sequence[str] = (), content: bytes | None = N
         raise FleetError(f"{path}: the suffix must be one of {', '.join(FORMATS)}")
     if content is None:
         _require_file(path)
-    table = FORMATS[suffix](path, ignored, content)
+    table = FORMATS[suffix](path, ignored, content, columns)
     if isinstance(table, CsvTable) and (said := wrong_encoding(table.head)):
         raise FleetError(f"{path}: {said}")
-    known = (AXIS, *COLUMNS.all)
+    known = (AXIS, *columns)
     table.ignored += tuple(name for name in table.indices if name not in known and name not in ignored)
     _require(table, [*known], [AXIS, *(column.name for column in COLUMNS.phases.values() if column.required)])
     return table

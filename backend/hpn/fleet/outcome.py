@@ -222,7 +222,7 @@ def _all_faults(batch: RowBatch, is_sound: BoolArray, catalogue: Catalogue) -> l
 def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[CellFault]:
     """Faults of the lists, or else those that the models or the selection find."""
     faults = [] if cells.get(AXIS) is not None else [CellFault(row, AXIS, Sentence(REQUIRED), "missing")]
-    if found := faults + [CellFault(row, *fault) for fault in _faults_of_lists(cells)]:
+    if found := faults + [CellFault(row, *fault) for fault in faults_of_lists(cells)]:
         return found
     try:
         application = Application.model_validate(COLUMNS.application_of(cells))
@@ -233,7 +233,8 @@ def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[Cel
     return [CellFault(row, AXIS, DISAGREED, "invalid")]
 
 
-def _faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, str]]:
+def faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, str]]:
+    """Column, reason and code of lists of phases that are missing or of other lengths."""
     count = len(cells.get("torque_Nm") or ())
     for name, column in COLUMNS.phases.items():
         values = cells.get(name)

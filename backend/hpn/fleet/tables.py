@@ -5,7 +5,7 @@ goes on.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from hpn.application.faults import BOUNDS
-from hpn.fleet.columns import AXIS, COLUMNS, INDEX, is_list, is_text
+from hpn.fleet.columns import AXIS, COLUMNS, INDEX, LONG_TEXTS, InputColumn, is_list, is_text
 from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError
 from hpn.words.wording import Sentence
@@ -59,8 +59,14 @@ class Progress(NamedTuple):
 class AxisTable(ABC):
     """A table of axes in a file, or in bytes under its name; FleetError names one that can't be read."""
 
-    def __init__(self, path: Path, ignored: Sequence[str] = (), content: bytes | None = None) -> None:
-        self.path, self.content = path, content
+    def __init__(
+        self,
+        path: Path,
+        ignored: Sequence[str] = (),
+        content: bytes | None = None,
+        columns: Mapping[str, InputColumn] = COLUMNS.all,
+    ) -> None:
+        self.path, self.content, self.columns = path, content, columns
         self.ignored = tuple(ignored)
         self.progress = Progress(0, None, "rows")
 
@@ -114,7 +120,7 @@ class AxisTable(ABC):
         """Type that a column is read as."""
         if name == AXIS:
             return self.axis_type
-        column = COLUMNS.all[name]
+        column = self.columns[name]
         return column.type if self.is_in_list_form or name not in COLUMNS.phases else column.type.value_type
 
     def wrong_types(self) -> Iterator[str]:
@@ -140,6 +146,8 @@ def with_short_texts(batch: RowBatch) -> RowBatch:
     """The rows; a text that is too long is a fault."""
     rows, faults = batch.rows, list(batch.faults)
     for place, name in enumerate(batch.rows.column_names):
+        if name in LONG_TEXTS:
+            continue
         column = batch.rows[name]
         long = _too_long(column.combine_chunks() if column.num_chunks != 1 else column.chunk(0))
         if long.any():

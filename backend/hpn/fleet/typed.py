@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pyarrow.types as kinds
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, COLUMNS, INDEX, InputColumn, is_list, is_text, plain_type
+from hpn.fleet.columns import AXIS, INDEX, InputColumn, is_list, is_text, plain_type
 from hpn.fleet.faults import CellFault
 from hpn.fleet.tables import AxisTable, Progress, RowBatch
 from hpn.fleet.uuids import is_uuid, text_of
@@ -82,19 +82,19 @@ class TypedTable(AxisTable):
     def type_of(self, name: str) -> pa.DataType:
         """Type that a column is read as: numbers that may be given by size are numbers or texts, as they stand."""
         wanted = super().type_of(name)
-        if name == AXIS or not COLUMNS.all[name].by_size or is_text(plain_type(self.given.field(name).type)):
+        if name == AXIS or not self.columns[name].by_size or is_text(plain_type(self.given.field(name).type)):
             return wanted
         return pa.float64()
 
     def wrong_type(self, name: str) -> str:
-        if name != AXIS and name not in COLUMNS.all:
+        if name != AXIS and name not in self.columns:
             return ""
         given = self.given.field(name).type
         if name == AXIS:
             is_right = is_text(self.axis_type) or kinds.is_integer(self.axis_type)
             wanted = "text, integers or UUIDs"
         else:
-            column = COLUMNS.all[name]
+            column = self.columns[name]
             is_right = column.takes(given, self.type_of(name))
             wanted = _words(column, self.type_of(name))
         return "" if is_right else f"column {name} is {given!s:.80}, where {wanted} belong"

@@ -60,6 +60,8 @@ class Choices:
 
 
 NO_CHOICES = Choices()
+ANY = "*"
+"""Mark of answers that belong to whichever content they are sent with."""
 
 
 @dataclass(frozen=True, slots=True)

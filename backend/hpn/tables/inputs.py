@@ -19,6 +19,9 @@ AXIS = "axis"
 FURTHER = {
     AXIS: "axis name, achse, achsname, achsbezeichnung, achse nr, antrieb, drive, joint, gelenk, bezeichnung, name, "
     "axe, asse, eje",
+    "qty": "qty, quantities, amount, pieces, pcs, number of axes, no of axes, number off, anzahl, anz, anzahl achsen, "
+    "achsanzahl, stück, stückzahl, stk, stückz, menge, quantité, qté, qte, nombre d'axes, nb d'axes, nb axes, pièces, "
+    "quantità, qtà, qta, q.tà, q.ta, numero assi, numero di assi, n assi, pezzi, cantidad, antal, aantal",
     "pn": "phase name, name of the phase, phasenname, phasenbezeichnung",
     "tp": "pause, pausenzeit, dwell, pausa, temps de pause, durée de pause, tempo di pausa",
     "Tk": "emergency stop torque, e-stop torque, not-halt-moment, nothaltmoment, not-halt-drehmoment, not-aus-moment, "
@@ -79,12 +82,16 @@ PHASE_ROLES = tuple(_OF_PHASE)
 NAME = Input("pn", "name", quantities.INPUTS["phase.name"], "text")
 """Name of a phase."""
 
+QUANTITY = Input("qty", "quantity", Named(N_("Number of such axes")), "whole")
+"""Quantity of an axis."""
+
 
 class Inputs:
     """Inputs by role, and the names of those that are none of a phase."""
 
     def __init__(self, *further: Input) -> None:
-        named = (Input(AXIS, AXIS, Named(N_("Axis")), "text"), *PHASE, NAME, *further) if further else (*PHASE, NAME)
+        of_axis = (Input(AXIS, AXIS, Named(N_("Axis")), "text"), QUANTITY) if further else ()
+        named = (*of_axis, *PHASE, NAME, *further)
         self.by_role: Mapping[str, Input] = {each.role: each for each in named}
         self.has_axes = bool(further)
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from hpn.tables.axes import read_axes
-from hpn.tables.columns import NO_CHOICES, Choices
+from hpn.tables.columns import ANY, NO_CHOICES, Choices
 from hpn.tables.cycles import read_grids
 from hpn.tables.files import TableBounds, contents_of
 from hpn.tables.outcomes import with_outcomes
@@ -48,7 +48,7 @@ def reading_of(
     if found.suffix or found.is_application:
         return Reading(text=found.text, suffix=found.suffix, is_application=found.is_application)
     of = _mark_of(found.text or content)
-    if choices.of != of:
+    if choices.of not in (of, ANY):
         choices = NO_CHOICES
     sheets = tuple(found.sheets)
     first = sheets[0] if len(sheets) == 1 or wanted.inputs.has_axes else ""

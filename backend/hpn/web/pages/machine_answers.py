@@ -1,51 +1,22 @@
 """A machine that was sized, on its way into the store and out of it. Arrow is imported by this module."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import msgspec
 import pyarrow as pa
-from msgspec import structs
 
-from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import AxisAnswer, AxisFault, AxisQuestion, answers
-from hpn.documents.axis import Axis
-from hpn.documents.merge import resolve
 from hpn.explain.comparison import is_same
-from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.faults import Reason, reasons_of
+from hpn.fleet.columns import AXIS
+from hpn.fleet.faults import Reason
 from hpn.fleet.listing import NEAREST
-from hpn.fleet.machine import Kept, table_of
 from hpn.fleet.outcome import FAULTS, answer_fields, located
-from hpn.store import AxisDraft, Machine, MachineDraft, SavedAxis
+from hpn.store import Machine, SavedAxis
 from hpn.web.columns import answer_in, common_of, resolved
-from hpn.web.columns import draft_of as draft_of_axis
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
-
-
-def draft_of(kept: Kept, catalogue: Catalogue) -> MachineDraft:
-    """Machine to be kept of axes that were sized."""
-    asked = {cells.pop(AXIS): cells for cells in table_of(kept.axes).to_pylist()}
-    rows = table_of(kept.answers).select([AXIS, FAULTS]).to_pylist()
-    owns = [COLUMNS.application_of(asked[row[AXIS]]) if row[FAULTS] is None else {} for row in rows]
-    found = answers([AxisQuestion(resolve(own, {})) for own in owns], catalogue)
-    drafts = [_axis(row, own, answer) for row, own, answer in zip(rows, owns, found, strict=True)]
-    return MachineDraft(drafts, ENGINE_VERSION, catalogue.version)
-
-
-def _axis(row: Mapping[str, Any], own: dict[str, Any], answer: AxisAnswer) -> AxisDraft:
-    """An axis of a table under its name there; one that was rejected is open, for the same reasons."""
-    if row[FAULTS] is not None:
-        answer = structs.replace(answer, faults=tuple(map(_fault, reasons_of(row[FAULTS]))))
-    return replace(draft_of_axis(Axis(application=own), answer), name=row[AXIS] or None)
-
-
-def _fault(reason: Reason) -> AxisFault:
-    """Fault of a cell, whose place is the column of the table."""
-    return AxisFault.at(f"/{reason.column.replace('.', '/')}", reason.sentence, reason.code)
 
 
 def answers_of(machine: Machine) -> pa.Table:

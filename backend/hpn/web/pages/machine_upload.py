@@ -15,6 +15,7 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
+from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.fleet.beside import read_machine
 from hpn.fleet.faults import CellFault
@@ -149,9 +150,9 @@ def _require_few(axes: int, phases: int) -> None:
 
 
 def _wanted() -> TableBounds:
-    from hpn.web.pages import upload_bounds
+    from hpn.web import axis_tables
 
-    return upload_bounds.WANTED
+    return axis_tables.WANTED
 
 
 def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Upload:
@@ -185,19 +186,13 @@ async def _calculated(request: Request, taken: Taken) -> MachineDraft:
     """Machine of a table; raises Problem."""
     catalogue = request.app.state.catalogue
     work = await compute(request, "pages", _work, taken, catalogue)
-    return await compute(request, "pages", _kept, await worked_beside(request, work), catalogue)
+    return MachineDraft(await worked_beside(request, work), ENGINE_VERSION, catalogue.version)
 
 
 def _work(taken: Taken, catalogue: Catalogue) -> Callable[[], Any]:
-    from hpn.fleet.machine import kept_of
+    from hpn.web.axis_tables import drafts_in
 
-    return partial(kept_of, taken.rows, taken.faults, dict(taken.origins), catalogue)
-
-
-def _kept(*arguments: Any) -> MachineDraft:
-    from hpn.web.pages.machine_answers import draft_of
-
-    return draft_of(*arguments)
+    return partial(drafts_in, taken.rows, taken.faults, dict(taken.origins), catalogue)
 
 
 WORDS: dict[str, Any] = {

@@ -1,0 +1,70 @@
+"""Answers to the questions about a table as programs give them: `Moment:T`, `3:Nm`, `decimal:,`."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+from hpn.tables.columns import ANY, SKIP, Choices, Column
+from hpn.tables.inputs import Inputs
+from hpn.words import spellings, units
+from hpn.words.wording import N_, Sentence
+
+NAMES = tuple(part.name for part in fields(Choices) if part.type is str and part.name != "of")
+"""Questions about a table as a whole."""
+
+NO_ANSWER = N_("{answer}: must be a column and what it is, or a question and its answer, with a colon between them")
+NO_COLUMN = N_("{answer}: the table has no column {name}, neither by heading nor by number")
+TWO_COLUMNS = N_("{answer}: the table has several columns {name}; name this one by its number")
+NO_MEANING = N_("{answer}: {meaning} is neither an input, such as T or torque_Nm, nor a unit, such as Nm, nor skip")
+MOST_SHOWN = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """Answers as they were given: those about the whole table, those about columns by their names, and what is none."""
+
+    whole: Choices = field(default_factory=lambda: Choices(of=ANY))
+    columns: Sequence[tuple[str, str]] = ()
+    faults: tuple[Sentence, ...] = ()
+
+
+def answers_of(given: Sequence[str]) -> Answers:
+    """Answers of texts with a colon between column and meaning, or question and answer."""
+    pairs = [(name.strip(), meaning.strip()) for name, _, meaning in (text.rpartition(":") for text in given)]
+    faults = tuple(_said(NO_ANSWER, text) for text, (name, _) in zip(given, pairs, strict=True) if not name)
+    whole: dict[str, Any] = {name: meaning for name, meaning in pairs if name in NAMES}
+    return Answers(Choices(of=ANY, **whole), [pair for pair in pairs if pair[0] and pair[0] not in NAMES], faults)
+
+
+def about(columns: Sequence[Column], answers: Answers, inputs: Inputs) -> Answers:
+    """The answers with those about columns by their places, and what is wrong with these."""
+    roles, of_units, faults = dict[int, str](), dict[int, str](), list(answers.faults)
+    meanings = _roles(inputs)
+    for name, meaning in answers.columns:
+        text = f"{name}:{meaning}"
+        places = _places(columns, name)
+        codes = (meaning,) if meaning in units.QUANTITY_OF else spellings.codes_for(meaning)
+        if len(places) != 1:
+            faults.append(_said(TWO_COLUMNS if places else NO_COLUMN, text, name=name))
+        elif meaning in meanings:
+            roles[places[0]] = meanings[meaning]
+        elif len(codes) == 1:
+            of_units[places[0]] = codes[0]
+        else:
+            faults.append(_said(NO_MEANING, text, meaning=meaning))
+    return Answers(replace(answers.whole, roles=roles, units=of_units), (), tuple(faults))
+
+
+def _roles(inputs: Inputs) -> Mapping[str, str]:
+    """Roles by what they may be called: symbol of links, or name of the column in the tables of `hpn fleet`."""
+    return {SKIP: SKIP} | {name: each.role for each in inputs.by_role.values() for name in (each.place, each.role)}
+
+
+def _places(columns: Sequence[Column], name: str) -> list[int]:
+    """Places of the columns of a heading, else of a number that counts from 1."""
+    found = [column.place for column in columns if column.heading.casefold() == " ".join(name.split()).casefold()]
+    return found or [column.place for column in columns if name == str(column.place + 1)]
+
+
+def _said(template: str, answer: str, **values: str) -> Sentence:
+    return Sentence(template, {name: text[:MOST_SHOWN] for name, text in {"answer": answer, **values}.items()})

@@ -1,0 +1,60 @@
+"""Tables of axes on their way into the store: how long they may be, and axes with their answers out of their rows.
+
+Arrow is imported by this module.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from msgspec import structs
+
+from hpn.catalogue import Catalogue
+from hpn.documents.answers import MOST_FAULTS, AxisAnswer, AxisFault, AxisQuestion, answers
+from hpn.documents.axis import Axis
+from hpn.documents.merge import resolve
+from hpn.fleet.columns import are_taken
+from hpn.fleet.faults import CellFault
+from hpn.fleet.machine import TableAxis, axes_in, in_row
+from hpn.fleet.outcome import located
+from hpn.links.symbols import AXIS_INPUTS
+from hpn.store import AxisDraft
+from hpn.tables.files import TableBounds
+from hpn.web.columns import draft_of
+
+WANTED = TableBounds(AXIS_INPUTS, most_rows=50_000, most_characters=4_000_000, takes=are_taken)
+"""Most rows and characters of a text whose columns are not named as `hpn fleet` names them."""
+
+
+def drafts_in(
+    rows: Sequence[Mapping[str, Any]],
+    faults: Sequence[CellFault],
+    origins: Mapping[str, Sequence[int]],
+    catalogue: Catalogue,
+) -> list[AxisDraft]:
+    """Axes of a table to be kept, all of them answered together; one with a wrong cell is open for that.
+
+    `origins` are the rows of a table of cells that the phases of an axis stand in.
+    """
+    found = axes_in(rows, faults)
+    asked = [AxisQuestion(resolve(each.axis.application, {}), each.axis.ordering_code) for each in found]
+    judged = zip(found, answers(asked, catalogue), strict=True)
+    return [_draft(each, answer, origins.get(each.name or "", ())) for each, answer in judged]
+
+
+def _draft(found: TableAxis, answer: AxisAnswer, numbers: Sequence[int]) -> AxisDraft:
+    axis = found.axis
+    if found.faults and answer.status != "open":  # whatever the models make of it, a cell of it is wrong
+        axis, answer = Axis(), AxisAnswer("open", catalogue_version=answer.catalogue_version)
+    return replace(draft_of(axis, _placed(found.faults, answer, numbers)), name=found.name)
+
+
+def _placed(faults: Sequence[CellFault], answer: AxisAnswer, numbers: Sequence[int]) -> AxisAnswer:
+    """An answer whose faults name the columns of the table, and its rows where these are known."""
+    if not faults and answer.status == "open" and numbers:
+        faults = [located(0, each.location, each.told, each.code) for each in answer.faults]
+    if not faults:
+        return answer
+    told = (in_row(fault, numbers) for fault in faults[:MOST_FAULTS])
+    of_cells = tuple(AxisFault.at(f"/{fault.column.replace('.', '/')}", fault.reason, fault.code) for fault in told)
+    return structs.replace(answer, faults=of_cells)
