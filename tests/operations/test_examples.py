@@ -68,6 +68,12 @@ def test_the_example_for_curl(example: Example, tmp_path: Path) -> None:
     assert [selection["reference"] for selection in json.loads(listed)["selections"]] == ["4711-07"]
     gears = json.loads((tmp_path / "gears.json").read_text())["gears"]
     assert sorted((gear["quantity"], gear["axes"]) for gear in gears) == [(1, [2]), (4, [1])]
+    (question,) = json.loads((tmp_path / "questions.json").read_text())["errors"]
+    made = json.loads((tmp_path / "made.json").read_text())
+    assert question["code"] == "question" and made["url"].startswith("/machines/")
+    changed = json.loads((tmp_path / "changed.json").read_text())
+    assert changed["common"]["tolerances"] and changed["axes"][0]["answer"]["holds"] in (True, False)
+    assert json.loads((tmp_path / "differing.json").read_text())["machines"] == []
     results = [json.loads(line) for line in (tmp_path / "results.ndjson").read_text().splitlines()]
     assert [(line["reference"], line["status"]) for line in results] == [("axis-1", "ok"), ("axis-2", "ok")]
     answers = (tmp_path / "answers.csv").read_text().splitlines()

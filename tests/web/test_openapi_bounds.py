@@ -62,11 +62,15 @@ def at(body: Json, path: Path) -> Any:
 
 
 def refusals(response: Any, pointer: str) -> list[str]:
-    """Errors of the models at a place; that the catalogue or the list has no such entry is no bound."""
+    """Errors of the models at a place; that catalogue, list or table has no such entry is no bound."""
     assert response.status_code in (200, 201, 404, 413, 422), response.text
     errors = response.json().get("errors", []) if response.status_code in (413, 422) else []
     found = [error["detail"] for error in errors if error["pointer"] == pointer]
-    return [text for text in found if not re.match("the catalogue has no|is not a cursor", text)]
+    return [
+        text
+        for text in found
+        if not re.match("the catalogue has no|is not a cursor|a+: must be a column and what it is", text)
+    ]
 
 
 INERTIAS = {"inertia_kgm2": 0.001, "inertia_ratio": 5}

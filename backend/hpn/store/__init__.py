@@ -14,14 +14,16 @@ from hpn.store.errors import (
     StoreUnavailableError,
 )
 from hpn.store.keys import Once
-from hpn.store.machines import LineFilter
+from hpn.store.lists import ID, LineFilter, Sorting
 from hpn.store.records import AxisDraft, DocumentLine, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
 from hpn.store.saved import Draft, SavedSelection, SelectionLine
-from hpn.store.store import ID, Store
+from hpn.store.store import Store
+from hpn.store.todays import AxisVerdict, Stale, Versions
 
 __all__ = [
     "ID",
     "AxisDraft",
+    "AxisVerdict",
     "Change",
     "DocumentLine",
     "Draft",
@@ -42,8 +44,11 @@ __all__ = [
     "SavedSelection",
     "SelectionLine",
     "ShareSpentError",
+    "Sorting",
+    "Stale",
     "Store",
     "StoreError",
     "StoreFullError",
     "StoreUnavailableError",
+    "Versions",
 ]

@@ -20,6 +20,7 @@ from hpn.store.writing import (
     insert_axes,
     insert_revision,
     keep_catalogue,
+    of_today,
     order_of,
     order_text,
     recount,
@@ -130,8 +131,8 @@ async def _update_axes(connection: AsyncConnection, id: str, made: Change, now: 
     c = axes.c
     one = update(axes).where(c.document == id, c.number == bindparam("row"))
     changed = [{"row": number, **axis_row(axis, now, made.by)} for number, _, axis in made.changed]
-    answered = [{"row": number, **answer} for number, _, answer in made.answered]
-    back = [{"row": number, **answer, "removed": None} for number, answer in made.restored]
+    answered = [{"row": number, **answer, "today_of": None} for number, _, answer in made.answered]
+    back = [{"row": number, **answer, "today_of": None, "removed": None} for number, answer in made.restored]
     counted = one.values(version=c.version + 1)
     for statement, rows in ((counted, changed), (one, answered), (counted, back)):
         if rows:
@@ -200,6 +201,9 @@ async def freeze(
     values |= await _search_values(connection, id, values)
     if draft.axis is not None:
         values |= await _working_copy(connection, id, draft, draft.axis, now)
+    if draft.head:
+        verdict = draft.head.get("selected"), draft.head.get("status")
+        values |= of_today(draft.engine_version, draft.catalogue_version, *verdict)
     await connection.execute(update(documents).where(documents.c.id == id).values(values))
     if draft.axis is not None:
         await recount(connection, id, now)

@@ -1,11 +1,11 @@
 """Statements of the transactions on machines: kept for a day when calculated, for good once saved."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, delete, exists, func, or_, select, text, tuple_, update
+from sqlalchemy import ColumnElement, delete, func, or_, select, text, update
 from sqlalchemy.ext.asyncio import AsyncConnection
 
 from hpn.store.errors import NoRoomError, ShareSpentError
@@ -13,7 +13,7 @@ from hpn.store.keys import Once, take
 from hpn.store.records import ANSWER, DocumentKind, DocumentLine, Machine, MachineDraft, RevisionDraft, SavedAxis
 from hpn.store.saved import search_text
 from hpn.store.tables import axes, deletions, documents
-from hpn.store.writing import counts_of, insert_axes, insert_revision, order_of, order_text
+from hpn.store.writing import counts_of, insert_axes, insert_revision, of_today, order_of, order_text
 
 UNSAVED_LASTS = timedelta(days=1)
 MOST_OF_CALLER = 20
@@ -53,8 +53,15 @@ async def insert_machine(
     row |= {"axis_order": order_text(numbers), "numbers": len(numbers), "bytes": draft.bytes}
     row["utilisation"] = max((each for each in used if each is not None), default=None)
     row["search_text"] = search_text(draft.title, draft.reference, draft.author)
+    if draft.revisions:
+        row |= {"revisions": len(draft.revisions), "revision": draft.revisions[-1][1].label}
+    asked = {(axis.answer["engine_version"], axis.answer["catalogue_version"]) for axis in draft.axes}
+    if len(asked) < 2:
+        row |= of_today(*next(iter(asked), (draft.engine_version, draft.catalogue_version)))
     await connection.execute(documents.insert(), row)
     await insert_axes(connection, id, list(zip(numbers, draft.axes, strict=True)), now, draft.owner or draft.author)
+    for number, (created, each) in enumerate(draft.revisions, start=1):
+        await insert_revision(connection, id, number, each, created)
     return id
 
 
@@ -116,60 +123,14 @@ async def read_axes(
     query = select(*AXIS).where(c.document == id, c.removed.is_not(None) if removed else c.removed.is_(None))
     if numbers is not None:
         query = query.where(c.number.in_(numbers))
+    return {(axis := axis_in(row)).number: axis for row in await connection.execute(query)}
+
+
+def axis_in(row: Sequence[Any]) -> SavedAxis:
+    """Axis of a row of the columns AXIS."""
     count = len(OWN_COLUMNS)
-    return {
-        (axis := _axis(row[:count], row[count:-1], row[-1])).number: axis for row in await connection.execute(query)
-    }
-
-
-def _axis(own: Sequence[Any], answer: Sequence[Any], application: str) -> SavedAxis:
-    named = dict(zip(OWN_COLUMNS, own, strict=True))
-    return SavedAxis(application=application.encode(), answer=dict(zip(ANSWER, answer, strict=True)), **named)
-
-
-@dataclass(frozen=True, slots=True)
-class LineFilter:
-    """Which saved documents a list has; None for whichever."""
-
-    kind: DocumentKind | None = "machine"
-    search: str | None = None
-    reference: str | None = None
-    author: str | None = None
-    selected: str | None = None
-    updated_since: datetime | None = None
-    created_since: datetime | None = None
-    todo: bool = False
-    """Only those with an axis that has no suitable gear."""
-
-    def conditions(self) -> Iterator[ColumnElement[bool]]:
-        """Conditions for them."""
-        c = documents.c
-        yield c.saved.is_not(None)
-        for name in ("kind", "reference", "author"):
-            if (value := getattr(self, name)) is not None:
-                yield c[name] == value
-        for word in search_text(self.search).split():
-            yield c.search_text.contains(word, autoescape=True)
-        if self.selected is not None:
-            own = (axes.c.document == c.id, axes.c.removed.is_(None), axes.c.selected == self.selected)
-            yield exists().where(*own)
-        if self.updated_since is not None:
-            yield c.updated >= self.updated_since
-        if self.created_since is not None:
-            yield c.created >= self.created_since
-        if self.todo:
-            yield c.suitable < c.axes
-
-
-async def read_lines(
-    connection: AsyncConnection, wanted: LineFilter, before: tuple[datetime, str] | None, limit: int
-) -> list[DocumentLine]:
-    """Saved documents, newest first."""
-    c = documents.c
-    query = select(*LINE).where(*wanted.conditions()).order_by(c.saved.desc(), c.id.desc()).limit(limit)
-    if before is not None:
-        query = query.where(tuple_(c.saved, c.id) < tuple_(*before))
-    return [DocumentLine(*row) for row in await connection.execute(query)]
+    named, answer = dict(zip(OWN_COLUMNS, row[:count], strict=True)), dict(zip(ANSWER, row[count:-1], strict=True))
+    return SavedAxis(application=row[-1].encode(), answer=answer, **named)
 
 
 async def read_deletions(

@@ -98,7 +98,7 @@ class RevisionLine:
 
 @dataclass(frozen=True, slots=True)
 class MachineDraft:
-    """A machine to be kept, with its axes in their order, and its first revision where it is frozen at once.
+    """A machine to be kept, with its axes in their order, and revisions that it has had elsewhere, with their moments.
 
     `id` is what it is kept under, `owner` the name of the API key that keeps it, None without one; `caller` stands for
     that key or else the address, whose unsaved machines are counted.
@@ -114,6 +114,7 @@ class MachineDraft:
     common: str = "{}"
     owner: str | None = None
     caller: str = ""
+    revisions: Sequence[tuple[datetime, RevisionDraft]] = field(default=(), repr=False)
     id: str = field(init=False, default_factory=new_id)
 
     @property
@@ -126,7 +127,8 @@ class MachineDraft:
 class DocumentLine:
     """One line of a list of documents; `saved` is None while nobody has saved it, `version` counts changes from 1.
 
-    `axes`, `suitable`, `unsuitable` and `open` are numbers of axes.
+    `axes`, `suitable`, `unsuitable` and `open` are numbers of axes. By the versions that `today_of` names, so many axes
+    get another verdict; `today_axes` are the numbers of the first of them, as JSON.
     """
 
     id: str
@@ -149,6 +151,9 @@ class DocumentLine:
     utilisation: float | None
     engine_version: str
     catalogue_version: str
+    today_of: str | None
+    today_changed: int | None
+    today_axes: str | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,7 +68,8 @@ class SelectionLine:
     """One line of a list of saved selections.
 
     `designation` is the gear that its page shows first, as it was judged then; None where an earlier version has saved
-    a reply that can't be read. `version` counts its changes from 1.
+    a reply that can't be read. `version` counts its changes from 1. By the versions that `today_of` names, its gear and
+    verdict are others where `today_changed` is not 0.
     """
 
     id: str
@@ -85,6 +86,10 @@ class SelectionLine:
     engine_version: str
     catalogue_version: str
     version: int
+    today_of: str | None
+    today_changed: int | None
+    today_selected: str | None
+    today_status: str | None
 
 
 @dataclass(frozen=True, slots=True)

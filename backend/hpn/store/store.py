@@ -1,38 +1,47 @@
 """The store: a few functions over a database, each within a time limit."""
 
 import asyncio
-import base64
 import logging
 import re
 import time
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import Any
 
 import brotli
 import msgspec
-from sqlalchemy import select, tuple_
+from sqlalchemy import select
 
 from hpn.catalogue import Catalogue
 from hpn.catalogue.copy import UnreadableCopyError, read_copy
 from hpn.store.changes import Change, Limits, change, freeze, read_revision, read_revisions
 from hpn.store.errors import StoreError, StoreUnavailableError
 from hpn.store.keys import Made, Once, made_by
+from hpn.store.lists import ID, LineFilter, read_lines
 from hpn.store.machines import (
-    LineFilter,
     add_machine,
     insert_unsaved,
     read_axes,
     read_deletions,
-    read_lines,
     read_machine,
     require_room,
     save_machine,
 )
 from hpn.store.records import DocumentKind, DocumentLine, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
 from hpn.store.rehearsal import rehearse
-from hpn.store.saved import Draft, Page, SavedSelection, SelectionLine, search_text, unpacked
+from hpn.store.saved import Draft, Page, SavedSelection, SelectionLine, unpacked
 from hpn.store.tables import catalogues, documents, revisions
+from hpn.store.todays import (
+    AxisVerdict,
+    Stale,
+    Versions,
+    count_pending,
+    keep_verdicts,
+    read_unasked,
+    settle,
+    settle_machine,
+    take_stale,
+)
 from hpn.store.transactions import Transactions
 from hpn.store.upgrade import missing_parts
 from hpn.store.writing import insert, remove, rename
@@ -40,9 +49,6 @@ from hpn.store.writing import insert, remove, rename
 logger = logging.getLogger(__name__)
 
 TRIAL_SECONDS = 1.0
-
-ID = re.compile(r"[A-Za-z0-9_-]{22}")
-"""An id: 128 random bits."""
 
 LABEL = re.compile(r"[A-Za-z0-9._-]{1,20}")
 """A label of a revision."""
@@ -169,25 +175,23 @@ class Store(Transactions):
             return None
 
     async def page(
-        self, *, reference: str | None = None, search: str | None = None, cursor: str | None = None, limit: int = 50
+        self,
+        *,
+        reference: str | None = None,
+        search: str | None = None,
+        cursor: str | None = None,
+        limit: int = 50,
+        wanted: LineFilter | None = None,
     ) -> Page:
-        """Saved selections, newest first: all, those of a reference, or those that have every word of a search.
+        """Saved selections, newest first: all, those of a reference, or those that have every word of a search; or
+        whichever are wanted.
 
         Words are found in title, reference, author, gear and ordering code, in any case. ValueError for a cursor that
         isn't one.
         """
-        c = documents.c
-        query = select(*SUMMARY).where(c.kind == "selection").order_by(c.saved.desc(), c.id.desc()).limit(limit + 1)
-        if reference is not None:
-            query = query.where(c.reference == reference)
-        for word in search_text(search).split():
-            query = query.where(c.search_text.contains(word, autoescape=True))
-        if cursor is not None:
-            query = query.where(tuple_(c.saved, c.id) < tuple_(*_position(cursor)))
+        wanted = wanted or LineFilter("selection", search, reference)
         async with self._reading() as connection:
-            found = [SelectionLine(*row) for row in await connection.execute(query)]
-        more = len(found) > limit
-        return Page(found[:limit], _cursor(found[limit - 1].created, found[limit - 1].id) if more else None)
+            return Page(*await read_lines(connection, SelectionLine, wanted, cursor, limit))
 
     # --- Documents ----------------------------------------------------------------------------------------------------
 
@@ -288,29 +292,38 @@ class Store(Transactions):
         self, cursor: str | None = None, limit: int = 50, wanted: LineFilter | None = None
     ) -> tuple[list[DocumentLine], str | None]:
         """Saved machines, newest first, and a cursor to those that follow; ValueError for one that isn't."""
-        before = None if cursor is None else _position(cursor)
         async with self._reading() as connection:
-            found = await read_lines(connection, wanted or LineFilter(), before, limit + 1)
-        if len(found) <= limit:
-            return found, None
-        last = found[limit - 1]
-        return found[:limit], _cursor(last.saved or last.created, last.id)
+            return await read_lines(connection, DocumentLine, wanted or LineFilter(), cursor, limit)
 
     async def deleted(self, since: datetime, kind: DocumentKind | None) -> list[tuple[str, datetime]]:
         """Ids of saved documents that were deleted since then, of a year at most, and when; the latest last."""
         async with self._reading() as connection:
             return await read_deletions(connection, since, kind)
 
+    # --- Today --------------------------------------------------------------------------------------------------------
 
-def _cursor(moment: datetime, id: str) -> str:
-    return base64.urlsafe_b64encode(f"{moment.isoformat()} {id}".encode()).decode()
+    async def pending(self, versions: Versions, kind: DocumentKind | None) -> int:
+        """Number of saved documents of which it is not known yet what they get by these versions."""
+        async with self._reading() as connection:
+            return await count_pending(connection, versions, kind)
 
+    async def take_stale(self, versions: Versions, most: int, *, is_new: bool = False) -> list[Stale]:
+        """Documents that this process, which may be new, asks from now on."""
+        return await self._write(lambda connection: take_stale(connection, versions, most, is_new=is_new))
 
-def _position(cursor: str) -> tuple[datetime, str]:
-    try:
-        created, _, id = base64.urlsafe_b64decode(cursor.encode()).decode().partition(" ")
-        if not ID.fullmatch(id):
-            raise ValueError
-        return datetime.fromisoformat(created).astimezone(UTC), id
-    except (ValueError, OverflowError):
-        raise ValueError("is not a cursor that this list has given") from None
+    async def settle(self, stale: Stale, versions: Versions, values: dict[str, Any] | None) -> None:
+        """Keep what a selection gets today; without values it is to be asked again."""
+        await self._write(lambda connection: settle(connection, stale, versions, values))
+
+    async def unasked_axes(self, id: str, versions: Versions, most: int) -> tuple[str, list[SavedAxis]]:
+        """Common values of a machine as JSON, and some of its axes that have not been asked."""
+        async with self._reading() as connection:
+            return await read_unasked(connection, id, versions, most)
+
+    async def keep_verdicts(self, id: str, versions: Versions, verdicts: Sequence[AxisVerdict]) -> None:
+        """Keep what axes of a machine get today."""
+        await self._write(lambda connection: keep_verdicts(connection, id, versions, verdicts))
+
+    async def settle_machine(self, id: str, versions: Versions) -> bool:
+        """Count the axes of a machine with another verdict; False where some have not been asked."""
+        return await self._write(lambda connection: settle_machine(connection, id, versions))

@@ -71,12 +71,20 @@ documents = Table(
     Column("catalogue_version", Text, nullable=False),
     Column("bytes", Integer, nullable=False, server_default="0"),  # of the axes' own parts
     Column("numbers", Integer, nullable=False, server_default="0"),  # numbers of axes given so far
+    # By today's engine and catalogue, whose versions `today_of` names; null until they have been asked.
+    Column("today_of", Text),
+    Column("today_changed", Integer),  # axes with another verdict
+    Column("today_selected", Text),
+    Column("today_status", Text),
+    Column("today_axes", Text),  # numbers of the first of them, as JSON
+    Column("today_taken", UtcTime),  # when a process has begun to ask
     # Long texts stand last: what stands behind them is read through all their pages.
     Column("common", Text, nullable=False, server_default="{}"),
     Column("axis_order", Text, nullable=False, server_default="[]"),
     Index("documents_saved", "kind", "saved", "id"),
     Index("documents_reference", "reference", "saved", "id"),
     Index("documents_created", "created"),
+    Index("documents_today", "today_of", "kind", "saved"),
     Index("documents_caller", "caller", "saved", "created"),
 )
 
@@ -123,6 +131,8 @@ axes = Table(
     Column("faults", Text, nullable=False, server_default="[]"),
     Column("engine_version", Text, nullable=False),
     Column("catalogue_version", Text, nullable=False),
+    Column("today_of", Text),  # versions that it was asked by again
+    Column("today_changed", Boolean),  # another verdict by these
     Column("application", Text, nullable=False),  # its own part, as it was sent
     Index("axes_counts", "document", "removed", "status", "utilisation", "phases"),
 )
@@ -159,6 +169,13 @@ idempotency_keys = Table(
     Column("part", Text),  # of the document that the key has made: numbers of axes, or a label
     Column("deleted", UtcTime),  # when its document was deleted
     Index("idempotency_keys_document", "document"),
+)
+
+askings = Table(
+    "askings",
+    metadata,
+    Column("versions", Text, primary_key=True),  # of engine and catalogue, by which documents are asked again
+    Column("begun", UtcTime, nullable=False),
 )
 
 deletions = Table(

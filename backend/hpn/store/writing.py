@@ -48,6 +48,7 @@ def _selection_row(draft: Draft, now: datetime) -> Row:
     return {
         **{name: getattr(draft, name) for name in (*named, *judged)},
         **counts_of([draft.status or "open"]),
+        **of_today(draft.engine_version, draft.catalogue_version, draft.selected, draft.status),
         "id": draft.id,
         "kind": "selection",
         "created": now,
@@ -101,7 +102,7 @@ def axis_row(axis: AxisDraft, now: datetime, by: str | None) -> Row:
     """Columns of an axis."""
     named = ("name", "quantity", "note", "ordering_code", "without", "phases")
     own = {name: getattr(axis, name) for name in named} | {"application": axis.application.decode()}
-    return own | dict(axis.answer) | {"updated": now, "updated_by": by}
+    return own | dict(axis.answer) | {"updated": now, "updated_by": by, "today_of": None}
 
 
 async def insert_revision(
@@ -113,6 +114,12 @@ async def insert_revision(
     row |= {"label_key": draft.label.casefold(), "created": now, "content_packed": packed(draft.content)}
     row["result_packed"] = None if draft.result is None else packed(draft.result)
     await connection.execute(revisions.insert(), row)
+
+
+def of_today(engine: str, catalogue: str, selected: str | None = None, status: str | None = None) -> Row:
+    """Columns of a document that was answered a moment ago: today it gets the same."""
+    own: Row = {"today_of": f"{engine} {catalogue}", "today_changed": 0, "today_axes": "[]"}
+    return own | {"today_selected": selected, "today_status": status}
 
 
 def counts_of(states: Sequence[str]) -> Row:
@@ -128,13 +135,18 @@ async def recount(connection: AsyncConnection, document: str, now: datetime) -> 
         return func.count(case((c.status == state, 1)))
 
     best = func.max(case((c.status == "suitable", c.utilisation)))
-    query = select(func.count(), of("suitable"), of("unsuitable"), of("open"), best)
-    total, suitable, unsuitable, open, used = (
+    versions = c.engine_version + " " + c.catalogue_version
+    query = select(
+        func.count(), of("suitable"), of("unsuitable"), of("open"), best, func.min(versions), func.max(versions)
+    )
+    total, suitable, unsuitable, open, used, oldest, newest = (
         await connection.execute(query.where(c.document == document, c.removed.is_(None)))
     ).one()
     values = {"axes": total, "suitable": suitable, "unsuitable": unsuitable, "open": open, "updated": now}
     await connection.execute(update(documents).where(d.id == document).values(values))
-    await connection.execute(update(documents).where(d.id == document, d.kind == "machine").values(utilisation=used))
+    values = {"utilisation": used, "today_of": newest if oldest == newest else None, "today_changed": 0}
+    values["today_axes"] = "[]"
+    await connection.execute(update(documents).where(d.id == document, d.kind == "machine").values(values))
 
 
 def _search_text(named: Any) -> str:

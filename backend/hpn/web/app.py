@@ -16,7 +16,7 @@ from hpn.documents.axis import Axis
 from hpn.documents.document import Document
 from hpn.documents.revision import RevisionBlock
 from hpn.store import Store, StoreUnavailableError
-from hpn.web import archive, fleets, spool
+from hpn.web import archive, fleets, spool, todays
 from hpn.web.api import (
     axes,
     batch,
@@ -193,6 +193,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.disk = Disk(settings.maximum_spool_bytes)
     app.state.metrics = Metrics(app.state.catalogue.version)
     app.state.store = CountedStore(app.state.metrics, **settings.database())
+    app.state.todays = todays.Todays(app.state)
     problems.install(app, explanations.page_of)
     for router in ROUTERS:
         app.include_router(router, responses={} if router is health.router else schemas.GUARDED)
@@ -222,7 +223,10 @@ async def _with_store(app: FastAPI) -> AsyncIterator[None]:
     with suppress(StoreUnavailableError, TimeoutError):  # the store says so in the log, and opens as soon as it can
         async with asyncio.timeout(app.state.settings.database_seconds):
             await store.open()
+    asking = asyncio.create_task(app.state.todays.run())
     yield
+    asking.cancel()
+    await asyncio.wait({asking})
     await fleets.ended(app.state)
     app.state.pools.close()
     await store.close()

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 from msgspec import Raw, structs
@@ -13,12 +13,12 @@ from hpn.documents.answers import AxisAnswer, AxisFault
 from hpn.documents.axis import MOST_AXES
 from hpn.documents.revision import Frozen, FrozenAxis
 from hpn.store import DocumentLine, Machine, RevisionLine, SavedAxis
-from hpn.web.api.replies import Moment, ProblemReply, RevisionReply
+from hpn.web.api.replies import SELECTIONS_LISTED, Moment, ProblemReply, RevisionReply
 from hpn.web.columns import answer_in, common_of, whole_of, without_of
 from hpn.web.door.problems import Problem
 from hpn.words.reply import Reply
 
-MACHINES_LISTED = 200
+L = TypeVar("L", bound="LineReply")
 
 OwnPart = Annotated[dict[str, Any], Field(description="Its own part of its application, as it was sent.")]
 Whole = Annotated[
@@ -86,12 +86,28 @@ class MachineReply(LineReply, frozen=True):
     axes: Annotated[tuple[AxisReply, ...], Field(max_length=MOST_AXES, description="Axes in their order.")]
 
 
+class MachineToday(Reply, frozen=True):
+    """What a document gets by today's engine and catalogue."""
+
+    verdict_changed: Annotated[int, Field(description="Number of axes with another gear or verdict.")]
+    axes: Annotated[list[int], Field(max_length=100, description="Numbers of the first 100 of them.")]
+
+
+class ListedReply(LineReply, frozen=True):
+    """One line of the list, with what it gets today."""
+
+    today: Annotated[MachineToday | None, Field(description="By today’s engine and catalogue; null until it is known.")]
+
+
 class MachineListReply(Reply, frozen=True):
     """Part of the list of documents."""
 
-    machines: Annotated[list[LineReply], Field(max_length=MACHINES_LISTED, description="Documents, newest first.")]
+    machines: Annotated[
+        list[ListedReply], Field(max_length=SELECTIONS_LISTED, description="Documents, in the order asked for.")
+    ]
     next_cursor: Annotated[str | None, Field(description="Asks for the next part; null at the end.")]
     deleted: Annotated[list[str], Field(description="Ids that were deleted since then, where that is asked.")]
+    pending: Annotated[int, Field(description="Number of documents of this kind whose `today` is not known yet.")]
 
 
 class NumbersReply(Reply, frozen=True):
@@ -150,7 +166,7 @@ def moment(time: datetime) -> str:
     return time.isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
-def line(found: DocumentLine, kind: type[LineReply] = LineReply, **more: Any) -> LineReply:
+def line(found: DocumentLine, kind: type[L] = LineReply, **more: Any) -> L:  # type: ignore[assignment]
     """A line of the list."""
     same = ("id", "kind", "title", "reference", "author", "note", "revision")
     return kind(
@@ -163,6 +179,14 @@ def line(found: DocumentLine, kind: type[LineReply] = LineReply, **more: Any) ->
         utilisation=found.utilisation if found.kind == "machine" else None,
         **more,
     )
+
+
+def listed(found: DocumentLine, key: str) -> ListedReply:
+    """A line of the list, with what it gets by the versions of a key, if that is known."""
+    today = None
+    if found.today_of == key and found.today_changed is not None:
+        today = MachineToday(found.today_changed, msgspec.json.decode(found.today_axes or "[]"))
+    return line(found, ListedReply, today=today)
 
 
 def machine(found: Machine) -> LineReply:

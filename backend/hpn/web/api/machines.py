@@ -1,10 +1,9 @@
 """Machines over REST: create, list, read, change, delete."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
-from typing import Annotated, Any, Literal, NamedTuple
-from urllib.parse import urlencode
+from datetime import datetime
+from typing import Annotated, Any, NamedTuple
 
 import msgspec
 from fastapi import APIRouter, Query
@@ -17,14 +16,16 @@ from hpn.catalogue import Catalogue
 from hpn.documents.axis import MOST_AXES, MOST_BYTES, MOST_PHASES
 from hpn.documents.common import Common
 from hpn.documents.document import Document, TitleBlock
-from hpn.store import Change, LineFilter, Machine, MachineDraft, Store
+from hpn.store import Change, LineFilter, Machine, MachineDraft, RevisionDraft, Store
+from hpn.store.records import DocumentKind
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
+from hpn.web.api.lists import KindQuery, linked, part_of
+from hpn.web.api.machine_tables import TABLES, draft_of_table
 from hpn.web.api.replies import JSONBytes, SavedReply, encode
-from hpn.web.archive import Line
 from hpn.web.columns import common_of, drafts_of
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
+from hpn.web.door.bodies import JSON, MERGE_PATCH, content_type_of, parsed, read_body
 from hpn.web.door.conditions import other_state
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
@@ -40,13 +41,17 @@ from hpn.web.machines import (
     require_document,
     tag_of,
 )
+from hpn.web.todays import versions_of
 
 REPLAYED = "Idempotency-Replayed"
 ADDRESS = "/api/v1/machines"
+MOST_ANSWERS, MOST_ANSWER = 90, 300
+"""Answers to the questions about a table, and characters of one."""
+
 TEXTS = 12
 """Names and lists of the JSON of a machine beyond those of its phases: what `GET` gives has each value three times."""
 
-KINDS = {"machine": "machine", "selection": "selection", "all": None}
+KINDS: Mapping[str, DocumentKind | None] = {"machine": "machine", "selection": "selection", "all": None}
 
 router = APIRouter(prefix=ADDRESS, tags=["Machines"])
 
@@ -74,20 +79,38 @@ class MachinePatch(TitleBlock):
     operation_id="saveMachine",
     summary="Save a machine",
     status_code=201,
-    openapi_extra=schemas.request_body(Document)
+    openapi_extra=schemas.with_tables(schemas.request_body(Document), TABLES)
     | {"parameters": [schemas.header("Idempotency-Key", "Makes a retry safe: see POST /api/v1/selections.")]},
     response_model=SavedReply,
     responses=schemas.answers(
-        *(400, 408, 410, 413, 415, 422),
+        *(400, 408, 410, 413, 415, 422, 501),
         status=201,
         headers=schemas.headers("Location", "ETag", REPLAYED),
         links=schemas.FROM_SAVED_MACHINE,
     ),
 )
-async def save_machine(request: Request) -> Response:
-    """Saves a machine with its axes, each with its answer; once answered with 201 it is durable."""
-    once = once_of(request, body := await read_body(request, maximum_bytes=MOST_BYTES))
-    draft = await compute(request, "batches", _draft, body, request.app.state.catalogue, request.state.api_key)
+async def save_machine(
+    request: Request,
+    answer: Annotated[
+        list[Annotated[str, Query(max_length=MOST_ANSWER)]],
+        Query(
+            description="Of a table: a column, by heading or number, and what it is: an input by symbol or name, a "
+            "unit, or skip, such as `Moment:T`, `3:Nm`, `Remark:skip`; or a question and its answer, such as "
+            "`decimal:,`.",
+            max_length=MOST_ANSWERS,
+        ),
+    ] = [],  # noqa: B006
+) -> Response:
+    """Saves a machine with its axes, each with its answer; once answered with 201 it is durable.
+
+    A table of axes is read as on the page /machines: what has two readings is never guessed, but listed as the errors
+    of a 422, to be answered by repeated `answer`.
+    """
+    once = once_of(request, body := await read_body(request, JSON, *TABLES, maximum_bytes=MOST_BYTES))
+    if content_type_of(request) == JSON:
+        draft = await compute(request, "batches", _draft, body, request.app.state.catalogue, request.state.api_key)
+    else:
+        draft = await draft_of_table(request, body, answer)
     id: str = await guarded(request.app.state.store.add_machine(draft, once))
     note(request, machine=id)
     headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await found(request, id, []))}
@@ -97,7 +120,16 @@ async def save_machine(request: Request) -> Response:
 
 
 def _draft(body: bytes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
-    sent = parsed(Document, body, require_machine)
+    return draft_of(parsed(Document, body, require_machine), catalogue, owner)
+
+
+def draft_of(
+    sent: Document,
+    catalogue: Catalogue,
+    owner: str | None,
+    revisions: Sequence[tuple[datetime, RevisionDraft]] = (),
+) -> MachineDraft:
+    """A machine to be kept, with its answers, and revisions that it has had elsewhere."""
     common = sent.common.sent
     return MachineDraft(
         axes=drafts_of(sent.axes, common, catalogue),
@@ -109,18 +141,8 @@ def _draft(body: bytes, catalogue: Catalogue, owner: str | None) -> MachineDraft
         note=sent.note,
         common=msgspec.json.encode(common).decode(),
         owner=owner,
+        revisions=revisions,
     )
-
-
-def _moment(time: datetime | None, name: str) -> datetime | None:
-    """A moment of the query, in UTC where it says no zone; Problem 422 for one before the first year."""
-    if time is None:
-        return None
-    try:
-        return (time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(UTC)
-    except OverflowError:
-        detail = "must be a moment such as 2026-11-26T08:30:00Z"
-        raise Problem(422, f"{name} {detail}", [((name,), detail)]) from None
 
 
 Fields = Annotated[
@@ -136,9 +158,6 @@ class FieldNames(NamedTuple):
     of_axes: Collection[str]
 
 
-Since = Annotated[datetime | None, Query(description="Only those of this moment or later.")]
-
-
 @router.get(
     "",
     dependencies=[admit("listing")],
@@ -147,38 +166,22 @@ Since = Annotated[datetime | None, Query(description="Only those of this moment 
     response_model=replies.MachineListReply,
     responses=schemas.answers(422, headers=schemas.headers("Link")),
 )
-async def list_machines(
-    request: Request,
-    search: Annotated[Line | None, Query(description="Only those with each of these words.")] = None,
-    reference: Annotated[Line | None, Query(description="Only those with this reference.")] = None,
-    author: Annotated[Line | None, Query(description="Only those of this author.")] = None,
-    selected: Annotated[Line | None, Query(description="Only those with an axis with this gear.")] = None,
-    updated_since: Since = None,
-    created_since: Since = None,
-    deleted_since: Since = None,
-    kind: Annotated[
-        Literal["machine", "selection", "all"], Query(description="Machines, selections or both.")
-    ] = "machine",
-    cursor: Annotated[str | None, Query(max_length=200, description="Cursor from the page before.")] = None,
-    limit: Annotated[int, Query(ge=1, le=replies.MACHINES_LISTED, description="Largest number on a page.")] = 50,
-) -> Response:
-    """Saved machines, newest first; the Link header gives the next page. `deleted` has the ids that are gone."""
-    of_kind: Any = KINDS[kind]
-    since, created = _moment(updated_since, "updated_since"), _moment(created_since, "created_since")
-    wanted = LineFilter(of_kind, search, reference, author, selected, since, created)
+async def list_machines(request: Request, query: Annotated[KindQuery, Query()]) -> Response:
+    """Saved machines, newest first; the Link header gives the next page. `deleted` has the ids that are gone.
+
+    `today` says how many axes get another gear or verdict by today's engine and catalogue, and which; that is made in
+    the background, and `pending` says of how many documents it is not known yet.
+    """
     store: Store = request.app.state.store
-    try:
-        lines, following = await store.machines(cursor, limit, wanted)
-    except ValueError as error:
-        raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
-    deleted = _moment(deleted_since, "deleted_since")
-    gone = [] if deleted is None else [id for id, _ in await store.deleted(deleted, of_kind)]
-    listed = replies.MachineListReply([replies.line(each) for each in lines], following, gone)
+
+    async def read(wanted: LineFilter, cursor: str | None, limit: int) -> tuple[list[Any], str | None]:
+        return await store.machines(cursor, limit, wanted)
+
+    part = await part_of(request, query, KINDS[query.kind], read)
+    key = versions_of(request.app.state).key
+    listed = replies.MachineListReply([replies.listed(each, key) for each in part.lines], *part[1:])
     response = JSONBytes(encode(listed), headers={"Cache-Control": "no-cache"})
-    if following:
-        pairs = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
-        response.headers["Link"] = f'<{ADDRESS}?{urlencode([*pairs, ("cursor", following)])}>; rel="next"'
-    return response
+    return linked(response, request, ADDRESS, part)
 
 
 @router.get(

@@ -206,11 +206,33 @@ class SummaryReply(Reply, frozen=True):
     catalogue_version: Annotated[str, Field(description="Hash of the catalogue’s content then.")]
 
 
+class SelectionToday(Reply, frozen=True):
+    """What a saved selection gets by today's engine and catalogue."""
+
+    selected: Annotated[str | None, Field(description="Designation of the gear selected today, or null.")]
+    status: Annotated[
+        str | None, Field(description="Verdict on the gear that its page shows first; open where there is no answer.")
+    ]
+    verdict_changed: Annotated[bool, Field(description="True where gear or verdict are others than saved.")]
+
+
+class SelectionLineReply(SummaryReply, frozen=True):
+    """One saved selection in a list, with what it gets today."""
+
+    today: Annotated[
+        SelectionToday | None, Field(description="By today’s engine and catalogue; null until it is known.")
+    ]
+
+
 class SelectionListReply(Reply, frozen=True):
     """Page of the list of saved selections, newest first."""
 
-    selections: Annotated[list[SummaryReply], Field(max_length=SELECTIONS_LISTED, description="Saved selections.")]
+    selections: Annotated[
+        list[SelectionLineReply], Field(max_length=SELECTIONS_LISTED, description="Saved selections.")
+    ]
     next_cursor: Annotated[str | None, Field(description="Cursor of the next page; null at the end.")]
+    deleted: Annotated[list[str], Field(description="Ids that were deleted since then, where that is asked.")]
+    pending: Annotated[int, Field(description="Number of selections whose `today` is not known yet.")]
 
 
 class TodayReply(Reply, frozen=True):

@@ -63,6 +63,18 @@ def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
     return {"requestBody": {"required": True, "content": {kind: {"schema": dict(table)} for kind in media_types}}}
 
 
+def with_tables(body: dict[str, Any], media_types: Iterable[str]) -> dict[str, Any]:
+    """The entry of a body that may be a table of axes, too."""
+    table = {
+        "type": "string",
+        "format": "binary",
+        "description": "A row for each axis or phase, with whatever headings; `axes.csv` and `axes.parquet` of a "
+        "machine are such tables.",
+    }
+    body["requestBody"]["content"] |= {kind: {"schema": dict(table)} for kind in media_types}
+    return body
+
+
 # --- Responses --------------------------------------------------------------------------------------------------------
 
 HEADERS = {

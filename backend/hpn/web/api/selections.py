@@ -2,36 +2,34 @@
 
 from functools import partial
 from typing import Annotated, Any
-from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query
 from msgspec import Raw, convert, structs
-from pydantic import AfterValidator, Field
-from pydantic_core import PydanticCustomError
 from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.store import Draft, SavedSelection, SelectionLine, Store
+from hpn.store import Draft, LineFilter, SavedSelection, SelectionLine, Store
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
+from hpn.web.api.lists import ListQuery, linked, part_of
 from hpn.web.api.replies import (
     DIFFERENCES_SHOWN,
-    SELECTIONS_LISTED,
     JSONBytes,
     ProblemReply,
     SavedReply,
     SavedSelectionReply,
+    SelectionLineReply,
     SelectionListReply,
+    SelectionToday,
     SummaryReply,
     TodayReply,
 )
 from hpn.web.api.replies import encode as encode_reply
 from hpn.web.archive import (
     Labels,
-    Line,
     Names,
     Reopened,
     SaveRequest,
@@ -55,7 +53,7 @@ from hpn.web.door.conditions import (
 )
 from hpn.web.door.observation import note
 from hpn.web.door.pools import calculate
-from hpn.web.door.problems import Problem
+from hpn.web.todays import versions_of
 
 REPLAYED = "Idempotency-Replayed"
 KEY = (
@@ -64,15 +62,6 @@ KEY = (
     "retry saves nothing anew."
 )
 
-
-def _given(reference: str | None) -> str:
-    """A reference to search for. Of an empty variable of a script, every selection would come."""
-    if not reference:
-        raise PydanticCustomError("empty", "must not be empty; leave it out to list every selection")
-    return reference
-
-
-Reference = Annotated[Line, AfterValidator(_given), Field(json_schema_extra={"minLength": 1})]
 
 router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
 """Its routes are of different groups, which each declares."""
@@ -163,29 +152,23 @@ async def read_selection(
     responses=schemas.answers(422, headers=schemas.headers("ETag", "Link"), links=schemas.FROM_LIST)
     | schemas.HAS_IT_ALREADY,
 )
-async def list_selections(
-    request: Request,
-    reference: Annotated[Reference | None, Query(description="Only those with this reference.")] = None,
-    search: Annotated[
-        Line | None,
-        Query(description="Only those with each of these words in title, reference, author, gear or ordering code."),
-    ] = None,
-    cursor: Annotated[str | None, Query(max_length=200, description="Cursor from the page before.")] = None,
-    limit: Annotated[int, Query(ge=1, le=SELECTIONS_LISTED, description="Largest number on a page.")] = 50,
-) -> Response:
-    """Saved selections, newest first; the Link header gives the next page."""
+async def list_selections(request: Request, query: Annotated[ListQuery, Query()]) -> Response:
+    """Saved selections, newest first; the Link header gives the next page.
+
+    `today` is their gear and verdict by today's engine and catalogue; that is made in the background, and `pending`
+    says of how many it is not known yet. `differs=verdict` lists those that get another one.
+    """
     store: Store = request.app.state.store
-    try:
-        page = await store.page(reference=reference, search=search, cursor=cursor, limit=limit)
-    except ValueError as error:
-        raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
-    lines = [_summary(selection) for selection in page.selections]
-    response = conditional(request, encode_reply(SelectionListReply(lines, page.next_cursor)))
-    if page.next_cursor:
-        query = {"reference": reference, "search": search, "cursor": page.next_cursor, "limit": limit}
-        address = urlencode({name: value for name, value in query.items() if value is not None})
-        response.headers["Link"] = f'</api/v1/selections?{address}>; rel="next"'
-    return response
+
+    async def read(wanted: LineFilter, cursor: str | None, limit: int) -> tuple[list[Any], str | None]:
+        page = await store.page(cursor=cursor, limit=limit, wanted=wanted)
+        return page.selections, page.next_cursor
+
+    part = await part_of(request, query, "selection", read)
+    key = versions_of(request.app.state).key
+    lines = [_line(selection, key) for selection in part.lines]
+    response = conditional(request, encode_reply(SelectionListReply(lines, *part[1:])))
+    return linked(response, request, "/api/v1/selections", part)
 
 
 @router.patch(
@@ -292,6 +275,15 @@ def _today(reopened: Reopened, catalogue: Catalogue) -> TodayReply:
         figure_differences=None if figures is None else figures[:DIFFERENCES_SHOWN],
         problem=None if problem is None else convert(problem.body(), ProblemReply),
     )
+
+
+def _line(selection: SelectionLine, key: str) -> SelectionLineReply:
+    """A line of the list, with what it gets by the versions of a key, if that is known."""
+    today = None
+    if selection.today_of == key and selection.today_changed is not None:
+        verdict = selection.today_selected, selection.today_status
+        today = SelectionToday(*verdict, verdict_changed=selection.today_changed > 0)
+    return SelectionLineReply(**structs.asdict(_summary(selection)), today=today)
 
 
 def _summary(selection: SelectionLine) -> SummaryReply:

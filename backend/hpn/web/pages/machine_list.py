@@ -18,21 +18,23 @@ from hpn.web.pages.machine_upload import WORDS, Upload
 from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saved_list import LINES_ON_PAGE, NO_SUCH_PART
+from hpn.web.todays import versions_of
 from hpn.words.fields import Model
 from hpn.words.wording import Sentence
 
 
 class MachineFilter(Model):
-    """Filter of the list: those with every word of a search, or with an axis that has no suitable gear."""
+    """Filter of the list: those with every word of a search, with an axis that has no suitable gear, or with one that
+    gets another verdict today."""
 
     search: Line = ""
-    show: Literal["", "todo"] = ""
+    show: Literal["", "todo", "differs"] = ""
 
 
 @or_reason(REASON)
 async def show_machines(request: Request) -> Response:
     """Saved machines, newest first. `/api/v1/machines` says the same as JSON."""
-    query = request.query_params
+    query, versions = request.query_params, versions_of(request.app.state)
     cursor, lines, following, problems, wanted = (
         query.get("cursor") or None,
         [],
@@ -42,8 +44,10 @@ async def show_machines(request: Request) -> Response:
     )
     try:
         wanted = MachineFilter.model_validate({name: query[name] for name in ("search", "show") if name in query})
-        filter = LineFilter(search=wanted.search or None, todo=wanted.show == "todo")
+        changed_by = versions.key if wanted.show == "differs" else None
+        filter = LineFilter(search=wanted.search or None, todo=wanted.show == "todo", changed_by=changed_by)
         lines, following = await request.app.state.store.machines(cursor, LINES_ON_PAGE, filter)
+        request.app.state.todays.note(lines)
     except ValidationError as error:
         problems = tuple(Sentence("{text}", {"text": fault.text}) for fault in Problem.of(error).errors)
     except ValueError:
@@ -53,6 +57,7 @@ async def show_machines(request: Request) -> Response:
         **WORDS,
         "lines": lines,
         "wanted": wanted,
+        "versions": versions.key,
         "newest": cursor and onward(ADDRESS, **given),
         "older": following and onward(ADDRESS, **given, cursor=following),
         "draft": Upload(),

@@ -1,7 +1,7 @@
 """The list of saved selections: newest first, in parts, searched; what stands in it is renamed and deleted there."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 from fastapi import APIRouter
 from pydantic import ValidationError
@@ -9,7 +9,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn.links.labels import TITLE_BLOCK
-from hpn.store import Machine, SavedSelection, Store
+from hpn.store import LineFilter, Machine, SavedSelection, Store
 from hpn.web.archive import Line, changeable, not_found
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
@@ -20,6 +20,7 @@ from hpn.web.door.problems import Problem
 from hpn.web.form.linked import onward
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saving import REASON
+from hpn.web.todays import versions_of
 from hpn.words.fields import Model
 from hpn.words.titles import faults_of
 from hpn.words.wording import N_, Sentence
@@ -31,16 +32,18 @@ NO_SUCH_PART = N_("This part of the list can’t be found; its address is incomp
 
 
 class SelectionFilter(Model):
-    """Filter of the list: those of a reference, or those with every word of a search."""
+    """Filter of the list: those of a reference, with every word of a search, or with another verdict today."""
 
     reference: Line | None = None
     search: Line | None = None
+    differs: Literal["", "verdict"] = ""
 
 
 @or_reason(REASON)
 async def show_selections(request: Request) -> Response:
     """Saved selections, newest first. `/api/v1/selections` says the same as JSON, also to a browser."""
-    given = {name: request.query_params.get(name, "") for name in ("search", "reference")}
+    given = {name: request.query_params.get(name, "") for name in ("search", "reference", "differs")}
+    versions = versions_of(request.app.state)
     cursor = request.query_params.get("cursor") or None
     shown: dict[str, Any] = {
         **given,
@@ -50,18 +53,22 @@ async def show_selections(request: Request) -> Response:
         "older": "",
         "newest": onward(ADDRESS, **given),
         "later": bool(cursor),
+        "versions": versions.key,
     }
     store: Store = request.app.state.store
     status = 422
     try:
         wanted = SelectionFilter.model_validate(given)
-        part = await store.page(reference=wanted.reference, search=wanted.search, cursor=cursor, limit=LINES_ON_PAGE)
+        changed_by = versions.key if wanted.differs else None
+        lines = LineFilter("selection", wanted.search, wanted.reference, changed_by=changed_by)
+        part = await store.page(cursor=cursor, limit=LINES_ON_PAGE, wanted=lines)
     except ValidationError as error:
         shown["errors"] = {fault.location[0]: fault.text for fault in Problem.of(error).errors}
     except ValueError:
         shown["problem"] = NO_SUCH_PART
     else:
         status, shown["lines"] = 200, part.selections
+        request.app.state.todays.note(part.selections)
         shown["older"] = part.next_cursor and onward(ADDRESS, **given, cursor=part.next_cursor)
     return await compute(request, "pages", page, request, "selections.html", status, **shown)
 

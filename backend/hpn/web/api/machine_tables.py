@@ -1,0 +1,85 @@
+"""Machines out of tables over REST: read as the page /machines reads them, and questions listed in place of asked."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+from starlette.requests import Request
+
+from hpn import ENGINE_VERSION
+from hpn.application.faults import Fault
+from hpn.catalogue import Catalogue
+from hpn.documents.axis import MOST_AXES, MOST_PHASES
+from hpn.fleet.beside import MachineReading, read_answered
+from hpn.installed import ExtraMissingError, require
+from hpn.store import MachineDraft
+from hpn.tables.table import Choice, Table
+from hpn.web.api.fleet import MEDIA_TYPES, READ_TYPES
+from hpn.web.door.pools import compute, compute_beside
+from hpn.web.door.problems import Problem
+from hpn.web.fleets import worked
+from hpn.web.machines import EXCESS
+from hpn.words.wording import N_, Sentence
+
+WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+TABLES = (*MEDIA_TYPES.values(), *READ_TYPES.values(), WORKBOOK)
+"""Kinds of tables; which one it is, its content says."""
+
+ANSWER = ("answer",)
+OPTIONS = N_("{question} Answer with answer={name}: and one of {options}.")
+
+
+async def draft_of_table(request: Request, body: bytes, given: Sequence[str]) -> MachineDraft:
+    """Machine of a table, by answers to its questions; Problem 422 for open ones, 501 without the extra."""
+    try:
+        require("fleet")
+    except ExtraMissingError as error:
+        raise Problem(501, error.sentence) from None
+    catalogue: Catalogue = request.app.state.catalogue
+    reading = await compute(request, "pages", _reading, body, given)
+    read, faults = await compute_beside(request, "files", reading)
+    if faults:
+        raise Problem(422, faults, [Fault(ANSWER, fault.text, "answer") for fault in faults])
+    work = await compute(request, "pages", sizing_of, read, catalogue)
+    drafts = await worked(request, work)
+    return MachineDraft(drafts, ENGINE_VERSION, catalogue.version, owner=request.state.api_key)
+
+
+def _reading(body: bytes, given: Sequence[str]) -> Callable[[], Any]:
+    from hpn.web.axis_tables import WANTED  # Arrow takes half a second to import
+
+    return partial(read_answered, body, WANTED, given)
+
+
+def sizing_of(read: MachineReading, catalogue: Catalogue) -> Callable[[], Any]:
+    """The call that sizes the axes of a reading; Problem 422 where it can't be taken as it is."""
+    from hpn.web.axis_tables import drafts_in
+
+    if read.refusal:
+        raise Problem(422, read.refusal)
+    for what, count, most in (("axes", read.axes, MOST_AXES), ("phases", read.phases, MOST_PHASES)):
+        if count > most:
+            raise Problem(422, Sentence(EXCESS[what], {"most": str(most)}))
+    if read.reading.suffix:
+        return partial(drafts_in, read.rows, read.faults, {}, catalogue)
+    table = read.reading.table
+    assert table is not None
+    _require_whole(table)
+    return partial(drafts_in, table.axes, (), dict(table.origins), catalogue)
+
+
+def _require_whole(table: Table) -> None:
+    """Raise Problem 422 for a table that can't be read, or leaves questions open, with all of them."""
+    if table.problem:
+        raise Problem(422, table.problem)
+    asked = [_with_options(question, table.choices) for question in table.questions]
+    if asked:
+        raise Problem(422, asked, [Fault(ANSWER, question.text, "question") for question in asked])
+
+
+def _with_options(question: Sentence, choices: Sequence[Choice]) -> Sentence:
+    """A question with the answers that it takes, where it has a name."""
+    choice = next((each for each in choices if each.question == question and not each.chosen), None)
+    if choice is None:
+        return question
+    return Sentence(OPTIONS, {"question": question, "name": choice.name, "options": ", ".join(choice.options)})

@@ -1,0 +1,164 @@
+"""What saved documents get today: asked in the background after a change of engine or catalogue, once for each version.
+
+Several processes share the work: each takes some documents at a time, which no other takes meanwhile.
+"""
+
+import asyncio
+import logging
+import time
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from typing import Any
+
+import msgspec
+import orjson
+from starlette.datastructures import State
+
+from hpn import ENGINE_VERSION
+from hpn.catalogue import Catalogue
+from hpn.documents.answers import AxisAnswer, AxisQuestion, answers
+from hpn.documents.merge import resolve
+from hpn.store import AxisVerdict, DocumentLine, SavedAxis, SelectionLine, Stale, Store, StoreError, Versions
+from hpn.web.columns import resolved
+from hpn.web.door.pools import Pool
+
+MOST_DOCUMENTS, MOST_AXES = 20, 100
+"""Documents that are taken at once, and axes that are answered at once: what is in memory, and holds up a batch."""
+
+PATIENCE_SECONDS = 60.0
+"""Time after which somebody looks whether there is anything to ask, unless a list has shown that there is."""
+
+logger = logging.getLogger(__name__)
+
+
+def versions_of(state: State) -> Versions:
+    """Versions of today."""
+    return Versions(ENGINE_VERSION, state.catalogue.version)
+
+
+class Todays:
+    """The background work of one process, at `app.state.todays`."""
+
+    def __init__(self, state: State) -> None:
+        self._state = state
+        self._wanted = asyncio.Event()
+        self._is_new = True
+
+    def wake(self) -> None:
+        """Look soon."""
+        self._wanted.set()
+
+    def note(self, lines: Iterable[DocumentLine | SelectionLine]) -> None:
+        """Look soon where a list has documents of which it is not known what they get today."""
+        key = versions_of(self._state).key
+        if any(each.today_of != key for each in lines):
+            self.wake()
+
+    async def run(self) -> None:
+        """Ask what is to be asked, and wait for more, until this is cancelled."""
+        while True:
+            try:
+                while await self.ask_some():
+                    await asyncio.sleep(0)
+            except StoreError:  # the log says so already
+                pass
+            except Exception:
+                logger.exception("what saved documents get today can’t be asked")
+            self._wanted.clear()
+            with suppress(TimeoutError):
+                async with asyncio.timeout(PATIENCE_SECONDS):
+                    await self._wanted.wait()
+
+    async def ask_some(self) -> int:
+        """Number of documents that were taken and asked; 0 where there is nothing left to do."""
+        store: Store = self._state.store
+        versions = versions_of(self._state)
+        left, is_new = await store.pending(versions, None), self._is_new
+        self._is_new = False
+        if not left:
+            return 0
+        taken = await store.take_stale(versions, MOST_DOCUMENTS, is_new=is_new)
+        selections = [each for each in taken if each.kind == "selection"]
+        values = await self._work(_today_of, selections, self._state.catalogue) if selections else []
+        for stale, found in zip(selections, values, strict=True):
+            await store.settle(stale, versions, found)
+        for stale in taken:
+            if stale.kind == "machine":
+                await self._try_machine(stale, versions)
+        return len(taken)
+
+    async def _try_machine(self, stale: Stale, versions: Versions) -> None:
+        """Ask a machine; one that can't be asked holds up no other, and is tried again later."""
+        try:
+            await self._ask_machine(stale, versions)
+        except StoreError:
+            raise
+        except Exception:
+            logger.exception("what machine %s gets today can’t be asked", stale.id)
+
+    async def _ask_machine(self, stale: Stale, versions: Versions) -> None:
+        store: Store = self._state.store
+        while True:
+            common, axes = await store.unasked_axes(stale.id, versions, MOST_AXES)
+            if not axes:
+                break
+            verdicts = await self._work(_verdicts, axes, common, self._state.catalogue)
+            await store.keep_verdicts(stale.id, versions, verdicts)
+        await store.settle_machine(stale.id, versions)
+
+    async def _work(self, work: Any, *arguments: Any) -> Any:
+        """Result of work among the batches, of whose time it takes no more than half."""
+        pool: Pool = self._state.pools["batches"]
+        begun = time.monotonic()
+        result = await pool.run(work, *arguments)
+        await asyncio.sleep(time.monotonic() - begun)
+        return result
+
+
+def _verdict(answer: AxisAnswer, ordering_code: str | None) -> tuple[str, str | None]:
+    """Status and gear of an answer: that of the ordering code, else the selected one."""
+    return answer.status, answer.selected if ordering_code is None else answer.designation
+
+
+def _verdicts(axes: Sequence[SavedAxis], common: str, catalogue: Catalogue) -> list[AxisVerdict]:
+    """Axes of a machine, and whether today's verdict is another one."""
+    values = orjson.loads(common)
+    found = answers([AxisQuestion(resolved(axis, values), axis.ordering_code) for axis in axes], catalogue)
+    return [
+        AxisVerdict(axis, _verdict(answer, axis.ordering_code) != _kept(axis.answer, axis.ordering_code))
+        for axis, answer in zip(axes, found, strict=True)
+    ]
+
+
+def _kept(kept: Any, ordering_code: str | None) -> tuple[str, str | None]:
+    return kept["status"], kept["selected" if ordering_code is None else "designation"]
+
+
+def _today_of(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
+    """Columns of what selections get today; of one that can't be asked, that this is not known."""
+    try:
+        return _answered(selections, catalogue)
+    except Exception:
+        if len(selections) > 1:
+            return [columns for each in selections for columns in _today_of([each], catalogue)]
+        logger.exception("what selection %s gets today can’t be asked", selections[0].id)
+        return [{"today_changed": None}]
+
+
+def _answered(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
+    asked = [each for each in selections if not each.is_of_today]
+    wholes = [AxisQuestion(resolve(msgspec.json.decode(each.application), {}), each.ordering_code) for each in asked]
+    found = dict(zip((each.id for each in asked), answers(wholes, catalogue), strict=True))
+    return [_columns(each, found.get(each.id)) for each in selections]
+
+
+def _columns(then: Stale, answer: AxisAnswer | None) -> dict[str, Any]:
+    if answer is None:
+        return {"today_selected": then.selected, "today_status": then.status, "today_changed": 0}
+    is_other = answer.selected != then.selected
+    if then.status is not None:  # else an earlier version has kept nothing to compare with
+        is_other = is_other or _verdict(answer, then.ordering_code) != (
+            then.status,
+            then.selected if then.ordering_code is None else then.designation,
+        )
+    return {"today_selected": answer.selected, "today_status": answer.status, "today_changed": int(is_other)}
