@@ -363,4 +363,12 @@ def test_help_names_every_command(capsys: Output) -> None:
 
     assert exit_.value.code == 0
     out = capsys.readouterr().out
-    assert re.findall(r"^ {4}(\w+)", out, re.M) == ["select", "fleet", "catalogue", "serve", "database", "key"]
+    assert re.findall(r"^ {4}(\w+)", out, re.M) == [
+        "select",
+        "fleet",
+        "machine",
+        "catalogue",
+        "serve",
+        "database",
+        "key",
+    ]

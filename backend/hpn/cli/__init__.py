@@ -1,5 +1,5 @@
 """Command line: `hpn select application.json`, `hpn fleet axes.parquet answers.parquet`, `hpn catalogue`, `hpn serve`,
-`hpn database`, `hpn key NAME`, `hpn --version`.
+`hpn machine export ID FILE`, `hpn database`, `hpn key NAME`, `hpn --version`.
 
 Each command is a module of this package, which is imported when the command runs: none waits for what others need.
 """
@@ -16,9 +16,9 @@ from types import ModuleType
 
 from hpn.installed import require
 
-EXTRAS = {"serve": "serve", "database": "serve", "fleet": "fleet"}
+EXTRAS = {"serve": "serve", "database": "serve", "machine": "serve", "fleet": "fleet"}
 """Extras of commands that need one."""
-COMMANDS = "select, fleet, catalogue, serve, database or key"
+COMMANDS = "select, fleet, machine, catalogue, serve, database or key"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -93,6 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     form.add_argument("--json", action="store_true", help="print the whole reply of the API; the default into a pipe")
     form.add_argument("--table", action="store_true", help="print a table; the default on a terminal")
     _add_fleet(commands.add_parser("fleet", help="select gears for a table of axes"))
+    _add_machine(commands.add_parser("machine", help="export a machine of the database to a file, or import one"))
     listing = commands.add_parser("catalogue", help="list the gears, or show one")
     listing.add_argument("designation", nargs="?")
     serve = commands.add_parser("serve", help="serve page and API")
@@ -103,6 +104,23 @@ def _parser() -> argparse.ArgumentParser:
     key = commands.add_parser("key", help="make an API key")
     key.add_argument("name", help="owner of the key, as in the logs")
     return parser
+
+
+def _add_machine(machine: argparse.ArgumentParser) -> None:
+    actions = machine.add_subparsers(metavar="action", dest="action", required=True)
+    export = actions.add_parser("export", help="write a machine with its revisions as JSON, or its axes as a table")
+    export.add_argument("id", metavar="ID", help="its id, or the address of its page")
+    export.add_argument("file", metavar="FILE", help=".json, .csv or .parquet; - for JSON on standard output")
+    taken = actions.add_parser("import", help="save a machine of a file as a new one, and print its address")
+    taken.add_argument("file", metavar="FILE", help=".json that was exported, or a table of axes")
+    taken.add_argument("--title", help="title of a machine out of a table")
+    taken.add_argument(
+        "--answer",
+        metavar="COLUMN:MEANING",
+        action="append",
+        default=[],
+        help="answer to a question about a table, such as Moment:Nm, 3:skip or decimal:,",
+    )
 
 
 def _add_fleet(fleet: argparse.ArgumentParser) -> None:
