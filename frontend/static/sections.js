@@ -1,6 +1,8 @@
 // Sections of the result, one at a time. Those out of sight are left out of an answer and requested when they come into
 // sight.
 
+import { contentOf, formOf, isOfForm } from "./form.js";
+
 const wide = matchMedia("(min-width: 1024px)");
 const AHEAD = 400; // pixels below the edge of the window that count as in sight
 
@@ -42,7 +44,7 @@ document.addEventListener("click", (event) => {
   target.closest("details")?.setAttribute("open", "");
   if (wide.matches && target.id === section) scrollTo({ top: 0 });
   else target.scrollIntoView({ block: target.matches("input, select") ? "center" : "start" });
-  if (!link.matches(".tabs a")) target.focus({ preventScroll: true });
+  if (!link.matches(".tabs a")) (target.matches("fieldset") ? target.querySelector("input") : target).focus({ preventScroll: true });
 });
 
 const showAddressed = () => show(sectionOf(document.getElementById(location.hash.slice(1))) ?? "overview");
@@ -58,11 +60,24 @@ addEventListener("hashchange", () => {
 
 // --- What is in sight -------------------------------------------------------------------------------------------------
 
+const answered = { content: contentOf(formOf()) }; // what the form said when the answer came that is shown
+const isAnswered = () => !document.querySelector("#problems > *, [data-waiting]");
+
 document.addEventListener("htmx:config:request", (event) => {
   const { ctx } = event.detail;
   if (ctx.sourceElement.id === "application") {
     ctx.request.headers["HPN-Parts"] = [...document.querySelectorAll("[data-part]")].filter(isSeen).map((part) => part.id).join(" ");
-  } else if (isPart(ctx.sourceElement)) ctx.partOf = addressOf(ctx.sourceElement);
+  } else if (isPart(ctx.sourceElement)) {
+    ctx.partOf = addressOf(ctx.sourceElement);
+    if (isAnswered()) return;
+    // While an input is refused or missing, the parts are those of the answer of before.
+    ctx.request.body = new FormData();
+    for (const [name, value] of new URLSearchParams(answered.content)) ctx.request.body.append(name, value);
+  }
+});
+
+document.addEventListener("htmx:after:swap", ({ detail: { ctx } }) => {
+  if ((isOfForm(ctx) || ctx?.kept) && isAnswered()) answered.content = ctx.kept ? contentOf(formOf()) : ctx.asked;
 });
 
 const watcher = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => isIntersecting && bring(target)), { rootMargin: `0px 0px ${AHEAD}px` });

@@ -2,7 +2,7 @@
 
 import re
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import parse_qs
 
 import pytest
@@ -11,6 +11,38 @@ from playwright.sync_api import Download, Page, Request, Route, expect
 from tests.browser.conftest import Visitor, answer_held_back, button, edit_row, in_german, open_section
 
 EXAMPLE = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
+
+
+FAINT = """() => {
+  const luminance = (rgb) => {
+    const part = (value) => ((value /= 255) <= 0.03928 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+    return 0.2126 * part(rgb[0]) + 0.7152 * part(rgb[1]) + 0.0722 * part(rgb[2]);
+  };
+  const canvas = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+  const painted = (...colours) => {
+    for (const colour of colours) { canvas.fillStyle = colour; canvas.fillRect(0, 0, 1, 1); }
+    return canvas.getImageData(0, 0, 1, 1).data;
+  };
+  const ground = (each) => getComputedStyle(each).backgroundColor;
+  const grounds = (each) => (each ? [...grounds(each.parentElement), ground(each)] : ["#fff"]);
+  const found = [];
+  const walker = document.createTreeWalker(document.querySelector(".result"), NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const each = walker.currentNode.parentElement;
+    const isSeen = each.checkVisibility({ visibilityProperty: true, opacityProperty: true });
+    if (!walker.currentNode.data.trim() || !isSeen) continue;
+    if (each.closest(".visually-hidden, [aria-disabled], script, title, desc, .filled")) continue;
+    const style = getComputedStyle(each), drawn = each.closest("svg");
+    const below = grounds(drawn?.parentElement ?? each);
+    if (drawn && each.matches(".number")) below.push(getComputedStyle(each.previousElementSibling).fill);
+    const ink = drawn ? style.fill : style.color;
+    const [one, other] = [painted(...below), painted(...below, ink)].map(luminance).sort((a, b) => b - a);
+    const contrast = (one + 0.05) / (other + 0.05);
+    if (contrast < 4.5) found.push(`${each.outerHTML.slice(0, 120)} ${contrast.toFixed(2)}`);
+  }
+  return found;
+}"""
+"""Texts of the result whose contrast, of drawings too, is below the 4.5 of WCAG 1.4.3."""
 
 
 def torque(page: Page, phase: int) -> Any:
@@ -120,6 +152,25 @@ def test_verdict_says_in_full_strength_and_in_any_section_that_an_input_is_wrong
       return strength === 1;
     }"""
     page.wait_for_function(in_full, arg=message.element_handle())
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_while_an_input_is_refused_every_section_keeps_the_last_answer_readable(
+    visitor: Visitor, scheme: Literal["light", "dark"]
+) -> None:
+    page = visitor.open(f"{EXAMPLE}&FR=500&FA=200&JL=0.5&Jm=0.001&nm=3000&Tm=30")
+    page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    torque(page, 1).fill("abc")
+    expect(page.locator(".verdict .outdated")).to_be_visible()
+    for name in ("Overview", "Bearing", "Drive", "Candidates", "Compare", "Calculation", "Notes"):
+        open_section(page, name)  # of which none but the first was there before
+        section = page.locator(f"#{name.lower()}")
+        expect(section).to_have_text(re.compile(r"\w.{80}", re.DOTALL), use_inner_text=True)
+        ink = section.evaluate("section => getComputedStyle(section).color")
+        assert ink == {"light": "rgb(95, 101, 111)", "dark": "rgb(154, 160, 170)"}[scheme], name
+        assert page.evaluate(FAINT) == [], name
+    torque(page, 1).fill("41")
+    expect(page.locator(".verdict .outdated")).to_be_hidden()
 
 
 def test_foot_of_a_phone_says_that_its_gear_is_not_of_these_inputs(visitor: Visitor) -> None:
