@@ -1,6 +1,6 @@
 // Inputs that stand in the result, and what is done with an answer: links, files, saving.
 
-import { contentOf, formOf, isOfForm, isPlain } from "./form.js";
+import { contentOf, formOf, isOfForm, isPlain, isTicked } from "./form.js";
 import { beginEdit, isAddressed, note } from "./undo.js";
 
 // --- Inputs that stand in the result ----------------------------------------------------------------------------------
@@ -92,7 +92,7 @@ document.addEventListener("submit", async (event) => {
 // Inputs that were typed or chosen before htmx took over the form are answered now.
 const isTyped = (field) =>
   field.options ? [...field.options].some((option) => option.selected !== option.defaultSelected)
-  : /checkbox|radio/.test(field.type) ? field.checked !== field.defaultChecked
+  : isTicked(field) ? field.checked !== field.defaultChecked
   : "defaultValue" in field && field.value !== field.defaultValue;
 const answerTyped = () => [...formOf().elements].some(isTyped) && formOf().requestSubmit();
 document.addEventListener("htmx:after:process", answerTyped, { once: true });

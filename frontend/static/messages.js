@@ -41,19 +41,42 @@ export function unfold() {
 }
 
 // A number that ends in its decimal mark, a sign or an operator is no error of somebody who is about to type on, nor is the 0
-// of a duration of 0.3, nor a size whose number follows.
-const unfinishedNumber = (field) => "bySize" in field.dataset ? /[-+*/(.,eE=:]$|;[^:;]*$/.test(field.value.trim()) : field.inputMode === "decimal" && (field.name === "t" ? /(^0|[-+*/(.,eE=])$/ : /[-+*/(.,eE=]$/).test(field.value.trim());
+// of a duration of 0.3.
+const unfinishedNumber = (field) => field.inputMode === "decimal" && (field.name === "t" ? /(^0|[-+*/(.,eE=])$/ : /[-+*/(.,eE=]$/).test(field.value.trim());
 
-// Neither is a phase with a torque and no speed yet, nor a move without its time.
-function unfinishedRow() {
-  const row = document.activeElement?.closest("#duty tbody tr");
-  if (!row || row.querySelector('[aria-invalid="true"]')) return false;
-  const given = (name) => row.querySelector(`[name="${name}"]`)?.value.trim();
-  const filled = (row.querySelector("select") ? [["mv"], ["mt", "ma"]] : [["T"], ["n"], ["t"]]).map((names) => names.some(given));
-  return (given("pn") || filled.includes(true)) && filled.includes(false);
+// Neither is a phase with a torque and no speed yet, nor a move without its time: what each needs at least, of several one.
+const RAMPS = ["ma", "mta", "mtd", "md2"];
+const OF_PROFILE = { dwell: [["mt"]], modified_sine: [["ms"], ["mt"]], triangular: [["ms"], ["mt", "mn", "ma"]] };
+
+function needs(row, given) {
+  const profile = row.querySelector("select")?.value;
+  if (profile === undefined) return [["T"], ["n"], ["t"]];
+  return [["mv"], ...(OF_PROFILE[profile] ?? [["ms"], given("mn") && !given("mt") ? RAMPS : ["mt"]])];
 }
 
-export const isUnfinished = (field) => unfinishedNumber(field) || unfinishedRow();
+// The first cell that the row of the focus still lacks, where something stands in that row.
+function missingCell() {
+  const row = document.activeElement?.closest("#duty tbody tr");
+  if (!row || row.querySelector('[aria-invalid="true"]')) return null;
+  const cell = (name) => row.querySelector(`[name="${name}"]`);
+  const given = (name) => cell(name)?.value.trim();
+  const parts = needs(row, given);
+  const lacking = parts.find((names) => !names.some(given));
+  return lacking && (given("pn") || parts.some((names) => names.some(given))) ? lacking.map(cell).find(Boolean) : null;
+}
+
+// True where the request of a field waits for an input, which is named below the table and in the head of the result.
+export function awaited(field) {
+  const input = field && (missingCell() ?? (unfinishedNumber(field) ? field : null));
+  for (const each of document.querySelectorAll("#duty [data-awaited]")) each.removeAttribute("data-awaited");
+  if (!input) return false;
+  if (input !== field) input.setAttribute("data-awaited", "");
+  for (const link of document.querySelectorAll("[data-names-awaited]")) {
+    link.href = `#${input.id}`;
+    link.textContent = input.getAttribute("aria-label") ?? input.labels[0]?.firstElementChild.textContent;
+  }
+  return true;
+}
 
 document.addEventListener("focusout", (event) => {
   const row = event.target.closest("#duty tbody tr");

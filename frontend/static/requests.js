@@ -1,8 +1,8 @@
 // Requests of the form. Typing asks for the result alone, so that nothing typed is ever overwritten; other columns, another way,
 // Back and files bring another form. Everything hangs on the document, because the form may be replaced.
 
-import { contentOf, fieldsOf, formOf, isOfForm, valueOf } from "./form.js";
-import { isUnfinished, mark, unfold } from "./messages.js";
+import { contentOf, fieldsOf, formOf, isOfForm, isTicked, valueOf } from "./form.js";
+import { awaited, mark, unfold } from "./messages.js";
 import { begin, isReplacing, later, typed } from "./replacing.js";
 import { arrived, note, restoring, showAddress, showSteps } from "./undo.js";
 
@@ -21,8 +21,8 @@ document.addEventListener("htmx:config:request", (event) => {
   }
   if (restores) restored(ctx, restores);
   else note();
-  const waits = !press && !restores && ctx.sourceEvent.type === "input" && isUnfinished(ctx.sourceEvent.target);
-  form.toggleAttribute("data-waiting", Boolean(waits));
+  const waits = awaited(!press && !restores && ctx.sourceEvent.type === "input" ? ctx.sourceEvent.target : null);
+  form.toggleAttribute("data-waiting", waits);
   if (waits) return event.preventDefault();
   Object.assign(ctx, { before: restores?.before ?? fieldsOf(form), restores, asked: contentOf(form) });
   if (press || restores) begin(ctx);
@@ -68,7 +68,7 @@ function put(ctx) {
   for (const [id, value] of given) {
     const field = document.getElementById(id);
     if (!field) continue;
-    field[field.type === "checkbox" ? "checked" : "value"] = value;
+    field[isTicked(field) ? "checked" : "value"] = value;
     typed();
   }
   if (!focus) return;

@@ -63,3 +63,17 @@ def test_accessibility_check_of_a_first_visit_finds_nothing(visitor: Visitor, wi
     in_german(page)
     expect(page.get_by_role("region", name="Über diese Seite")).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+def test_what_is_refused_before_there_is_any_answer_is_said_in_the_result_and_beside_its_field(
+    visitor: Visitor,
+) -> None:
+    page = visitor.open("/?T=&n=&t=")
+    page.get_by_role("radio", name="Belt").check()
+    page.get_by_label("Torque, phase 1").fill("30")
+    page.get_by_label("Speed, phase 1").fill("150")
+    page.get_by_label("Duration, phase 1").fill("2")
+    expect(page.locator("#problems")).to_contain_text("Pitch diameter")
+    expect(page.get_by_label("Pitch diameter")).to_have_attribute("aria-invalid", "true")
+    page.get_by_label("Pitch diameter").fill("80")
+    expect(page.get_by_role("region", name="Result")).to_contain_text("suitable")

@@ -13,6 +13,10 @@ SAVED = re.compile("/selections/[A-Za-z0-9_-]{22}$")
 ON_DESK = pytest.mark.parametrize("width", [1440, pytest.param(390, marks=pytest.mark.soak)])
 ON_PHONE = pytest.mark.parametrize("width", [390, pytest.param(1440, marks=pytest.mark.soak)])
 START = "/?mech=rotary&mv=trapezoidal&ms=&mt="
+RAMPS = (
+    "/?mech=ball_screw&h=20&ml=180&mc=120&inc=90&mv=trapezoidal&ms=600&mt=&mn=400&mta=0.2&mtd=0.5"
+    "&mv=dwell&ms=&mt=1.5&mn=&mta=&mtd="
+)
 LIFTED = "/?mech=ball_screw&h=20&ml=120&inc=90&mv=s_curve&ms=-400&mt=1.5&mv=modified_sine&ms=400&mt=2"
 
 
@@ -166,6 +170,59 @@ def test_a_cell_is_shown_where_the_profile_has_it_or_something_stands_in_it(visi
     expect(box(page, "Jerk share, move 1")).to_be_hidden()
     expect(box(page, "Angle, move 1")).to_be_visible()
     expect(page.locator("#duty-errors")).to_contain_text("has no Angle: leave it out")
+
+
+def test_a_complete_move_is_answered_at_once_and_the_missing_cell_is_named_where_it_is_not(visitor: Visitor) -> None:
+    page = visitor.open("/?mech=ball_screw&h=20&ml=180&mv=trapezoidal&ms=600&mt=2")
+    expect(result(page)).to_contain_text("suitable")
+    page.get_by_role("button", name="ramps up and down").click()
+    page.get_by_role("button", name="Add move").click()
+    page.get_by_role("combobox", name="Profile, move 2").select_option("Trapezoidal")
+    awaited = page.get_by_text("Still to enter:").filter(visible=True)
+    expect(awaited).to_have_count(2)  # below the table and in the result
+    expect(awaited.first).to_contain_text("Distance, move 2, in mm")
+    expect(page.locator("td:has(> [data-awaited]) > input")).to_have_attribute("id", "ms-1")
+    box(page, "Distance, move 2").fill("-600")
+    expect(awaited.last).to_contain_text("Time, move 2, in s")
+    box(page, "Largest speed, move 2").fill("400")
+    expect(awaited.last).to_contain_text("Acceleration time, move 2, in s")
+    box(page, "Acceleration time, move 2").fill("0.2")
+    expect(page).to_have_url(re.compile("mn=400&mta=0.2"))  # neither its time nor its acceleration is given
+    expect(awaited).to_have_count(0)
+    expect(page.locator("[data-awaited]")).to_have_count(0)
+
+
+@pytest.mark.parametrize(("width", "panel"), [(1440, 700), (1920, 760), (1300, 580), (1024, 1024)])
+def test_the_panel_widens_for_more_columns_and_a_move_stays_one_row(visitor: Visitor, width: int, panel: int) -> None:
+    page = visitor.open(f"{RAMPS}&pn=Raise&pn=Load&FRi=100&FRi=", width)
+    form = page.locator("#application").bounding_box()
+    cells = page.locator("#move-0 > :is(td, th)").evaluate_all(
+        "all => all.filter(each => each.checkVisibility()).map(each => each.getBoundingClientRect().top)"
+    )
+    assert form and form["width"] == panel
+    assert len(set(cells)) == 1
+    assert has_no_sideways_scroll(page)
+    assert (
+        page.locator("#duty :is(input, select)").evaluate_all(
+            "all => all.filter(each => each.scrollWidth > each.clientWidth + 1)"
+        )
+        == []
+    )
+    expect(page.get_by_role("columnheader", name="up", exact=True)).to_be_visible()
+    assert violations(page) == []
+
+
+def test_ramps_turn_from_times_into_accelerations_and_back(visitor: Visitor) -> None:
+    page = visitor.open(RAMPS)
+    units = page.get_by_role("group", name="Ramps given as")
+    expect(units.get_by_role("button", name="s", exact=True)).to_have_attribute("aria-pressed", "true")
+    units.get_by_role("button", name="mm/s²").click()
+    expect(box(page, "Acceleration, move 1")).to_have_value("2000")
+    expect(box(page, "Deceleration, move 1")).to_have_value("800")
+    expect(page).to_have_url(re.compile("mn=400&ma=2000&md2=800"))
+    page.get_by_role("group", name="Ramps given as").get_by_role("button", name="s", exact=True).click()
+    expect(box(page, "Deceleration time, move 1")).to_have_value("0.5")
+    expect(page).to_have_url(re.compile("mn=400&mta=0.2&mtd=0.5"))
 
 
 def test_moves_are_edited_by_the_keys_of_phases(visitor: Visitor) -> None:

@@ -199,7 +199,7 @@ def test_phase_left_unfinished_is_reported_when_its_row_is_left(visitor: Visitor
     page.get_by_role("button", name="Add phase").click()
     expect(torque(page, 4)).to_be_focused()
     page.keyboard.type("50")
-    expect(page.get_by_text("Complete the phase to recalculate.")).to_be_visible()
+    expect(page.locator("form .waiting")).to_have_text("Still to enter: Speed, phase 4, in rpm")
     page.get_by_label("Pause").focus()
     expect(page.get_by_label("Speed, phase 4")).to_have_accessible_description("is missing")
 

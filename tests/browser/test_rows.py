@@ -280,4 +280,4 @@ def test_a_phase_is_named_in_its_row_and_where_an_input_is_wrong(visitor: Visito
     expect(page.locator("#duty-errors")).to_contain_text("phase 2 (lift)")
     button(page, "+ Add phase").click()
     page.get_by_label("Name, phase 4").fill("brake")
-    expect(page.get_by_text("Complete the phase to recalculate.")).to_be_visible()
+    expect(page.locator("form .waiting")).to_have_text("Still to enter: Torque, phase 4, in Nm")

@@ -50,20 +50,27 @@ def test_a_pulley_at_45_mm_is_judged_with_its_lever(visitor: Visitor) -> None:
     page.get_by_label("Radial load acts at").fill("45")
     expect(selected(page)).to_contain_text("one input is missing · one gear passes every other check")
     page.get_by_label("Axial load acts at").fill("40")
-    page.get_by_label("Shaft’s centre at").fill("21")
+    page.get_by_label("x_c of 20A").fill("21")
+    expect(page).to_have_url(re.compile("xc=20A:21"))
     expect(selected(page)).to_contain_text("No gear is suitable")
     expect(verdict(page)).to_contain_text("largest load on the output bearing (102")
 
 
 def test_a_pulley_on_the_shaft_is_counted_from_the_torques(visitor: Visitor) -> None:
     page = visitor.open(f"{AXIS}&size=20A")
-    page.locator("#group-lever > summary").click()
-    page.get_by_label("On the gear’s shaft").select_option("belt")
+    expect(page.get_by_label("Pitch diameter")).to_be_hidden()
+    page.get_by_role("group", name="On the gear’s shaft").get_by_role("radio", name="Belt").check()
+    expect(page.get_by_label("Helix angle of the rack")).to_be_hidden()
     page.get_by_label("Pitch diameter").fill("200")
     page.get_by_label("Tension factor of the belt").fill("1.5")
     expect(page).to_have_url(re.compile("kb=1.5&dt=belt&dd=200"))
+    expect(page.locator("#counted")).to_contain_text("up to 600 N")
     page.get_by_role("link", name="Bearing").click()
     expect(page.get_by_text("from a tangential force of 400").first).to_be_visible()
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    expect(page.get_by_role("radio", name="Typed")).to_be_checked()
 
 
 def test_a_brake_that_is_too_hard_says_how_hard_it_may_be(visitor: Visitor) -> None:

@@ -188,7 +188,9 @@ def test_an_edit_brings_what_is_in_sight_and_a_section_that_is_opened_follows_fr
 def test_a_cell_that_is_blanked_leaves_no_result_as_if_it_were_valid(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.get_by_label("Speed, phase 2").fill("")
-    expect(page.get_by_text("Complete the phase to recalculate.")).to_be_visible()
+    for place in ("form", ".verdict"):
+        expect(page.locator(f"{place} .waiting")).to_be_visible()
+        expect(page.locator(f"{place} .waiting")).to_have_text("Still to enter: Speed, phase 2, in rpm")
     shown = [
         page.locator(name) for name in (".tabs", "#jump strong", "#cycle svg", "#overview")
     ]  # the second is the verdict on a phone

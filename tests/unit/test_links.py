@@ -253,3 +253,11 @@ def test_every_input_stands_in_one_group_of_the_form_by_its_name() -> None:
     assert sorted(["tp", *grouped]) == sorted(symbol.name for symbol in symbols.SYMBOLS)
     every = (*symbols.PHASE_SYMBOLS, *symbols.BY_PATH.values(), *symbols.TURN_SYMBOLS, *symbols.STROKE_SYMBOLS)
     assert all(symbol.named.name for symbol in every)
+
+
+def test_the_field_of_a_size_is_read_in_the_notation_of_the_form_and_a_blank_one_is_absent() -> None:
+    typed = [("xc.20A", "21,5"), ("xc.32A", ""), ("xc", ""), ("written", "de")]
+    form = link_reader.parse([*parse_qsl("T=40&n=250&t=1&xR=45&FR=500"), *typed])
+    assert form.application and form.application.output_load
+    assert form.application.output_load.shaft_centre_mm == {"20A": 21.5}
+    assert to_link(form.application).endswith("&xR=45&xc=20A:21.5")

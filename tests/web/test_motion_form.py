@@ -1,6 +1,7 @@
 """The form of a motion without a browser: switching, rows, bodies, errors, and phases that are taken over."""
 
 import re
+from collections.abc import Sequence
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
@@ -13,7 +14,7 @@ from hpn.links import symbols
 from hpn.links.labels import LABELS
 from hpn.links.rows import MOVE_COLUMNS
 from hpn.links.writer import to_link
-from hpn.physics.motion.moves import Stroke, Turn
+from hpn.physics.motion.moves import Move, Stroke, Turn
 from hpn.web.form.form import Form
 from hpn.web.form.link_reader import parse
 from hpn.web.form.ways import EXAMPLES, START
@@ -47,6 +48,12 @@ def pressed(api: TestClient, query: str, *presses: str, cookies: str = "") -> st
 
 def given(page: str, *names: str) -> list[tuple[str, str]]:
     return [(name, text) for name, text in fields_of(page) if name in names and text]
+
+
+def moves_of(query: str) -> Sequence[Move]:
+    application = read(query).application
+    assert application and application.duty_cycle.motion
+    return application.duty_cycle.motion.moves
 
 
 def bodies(*rows: dict[str, Any]) -> str:
@@ -162,6 +169,58 @@ def test_the_columns_of_a_profile_are_those_that_the_model_lets_it_have() -> Non
                 except ValidationError as error:
                     refused = {found["type"] for found in error.errors()}
                 assert ("move_has_no" in refused) == (symbol.name not in columns), (profile, symbol.name)
+
+
+def test_ramps_are_a_pair_of_columns_in_one_unit_and_turn_into_the_other_without_another_move() -> None:
+    """600 mm at 400 mm/s up in 0.2 s and down in 0.5 s: 2000 and 800 mm/s2."""
+    query = (
+        "mech=ball_screw&h=20&ml=180&mv=trapezoidal&ms=600&mt=&mn=400&mta=0.2&mtd=0.5&mv=dwell&ms=&mt=1&mn=&mta=&mtd="
+    )
+
+    def shown(asked: str) -> list[str]:
+        return [
+            symbol.name
+            for symbol in read(asked).move_columns
+            if symbol.name not in ("mv", "ms", "mt", "mn", "mj", "mx")
+        ]
+
+    assert shown(query) == ["mta", "mtd"]
+    turned = f"{query}&do=ramps:acceleration"
+    assert shown(turned) == ["ma", "md2"]
+    assert [read(turned).moves[0][name] for name in ("mn", "ma", "md2")] == ["400", "2000", "800"]
+    assert moves_of(turned)[0].timing.ramps_s == pytest.approx(moves_of(query)[0].timing.ramps_s, rel=1e-12)
+    both = read(f"{query}&do=ramps:acceleration&do=ramps:time")
+    assert both.application == read(query).application
+    assert shown(query.replace("&mta=0.2&mtd=0.5", "&mta=&mtd=") + "&do=ramps") == ["ma"]
+
+
+def test_a_ramp_that_never_reaches_its_speed_turns_into_the_same_move() -> None:
+    """90 degrees never reach 500 rpm at 900 deg/s2: 90 = a t2 makes 0.316 s for each ramp."""
+    query = "mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=&mn=500&ma=900&md2="
+    (one,), (other,) = moves_of(query), moves_of(f"{query}&do=ramps:time")
+    assert other.acceleration_time_s == pytest.approx(0.1**0.5, rel=1e-11)
+    assert other.timing.ramps_s == pytest.approx(one.timing.ramps_s, rel=1e-11)
+
+
+def test_the_ramps_of_an_unfinished_move_stay_where_they_are() -> None:
+    form = read("mech=rotary&J=0.8&mv=trapezoidal&ms=&mt=&mn=50&ma=900&md2=400&do=ramps:time")
+    assert [form.moves[0][name] for name in ("mta", "mtd", "ma", "md2")] == ["", "", "900", "400"]
+
+
+@pytest.mark.parametrize(
+    ("move", "place"),
+    [
+        ("mv=trapezoidal&ms=&mt=1", "ms-0"),
+        ("mv=trapezoidal&ms=90&mt=&mn=20", "mt-0"),
+        ("mv=triangular&ms=90&mt=", "mt-0"),
+    ],
+)
+def test_a_figure_that_a_move_lacks_is_named_at_its_cell_and_in_the_result(
+    api: TestClient, move: str, place: str
+) -> None:
+    page = api.get(f"/?mech=rotary&J=0.8&{move}").text
+    assert re.search(rf'id="{place}"[^>]*aria-invalid="true"', page)
+    assert f'<li data-field="{place}">' in page[page.index('id="result"') :]
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ OPTIONAL: Mapping[str, tuple[str, ...]] = {
     "names": (NAME.role,),
     "loads": LOADS,
     "varying": ("Tpk", "npk", "Trms", "Tlo"),
-    "ramps": ("mta", "mtd", "md2"),
+    "ramps": ("mta", "mtd"),
+    "unequal": ("md2",),
     "jerk": ("mjk",),
 }
 """Columns of phases and moves that appear where they are used, by the button that shows them."""
@@ -19,14 +20,18 @@ OPTIONAL: Mapping[str, tuple[str, ...]] = {
 SHARED = ("names", "loads")
 """Those that phases and moves have by the same names."""
 
+EVEN = "ma"
+"""Acceleration of both ramps, or of the first beside a deceleration: no column beside ramps by time unless used."""
+
 OF_ANY_ROW = (NAME.role, *LOADS)
 
-_TIMED = ("ms", "mt", "mn", "ma")
+_TIMED = ("ms", "mt", "mn", EVEN)
+_RAMPS = (*OPTIONAL["ramps"], *OPTIONAL["unequal"])
 _EVERY_MOVE = ("mx", *OF_ANY_ROW)
 MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
-    "trapezoidal": (*_TIMED, *OPTIONAL["ramps"], *_EVERY_MOVE),
+    "trapezoidal": (*_TIMED, *_RAMPS, *_EVERY_MOVE),
     "triangular": (*_TIMED, *_EVERY_MOVE),
-    "s_curve": (*_TIMED, *OPTIONAL["ramps"], "mj", *OPTIONAL["jerk"], *_EVERY_MOVE),
+    "s_curve": (*_TIMED, *_RAMPS, "mj", *OPTIONAL["jerk"], *_EVERY_MOVE),
     "modified_sine": ("ms", "mt", *_EVERY_MOVE),
     "dwell": ("mt", *_EVERY_MOVE),
 }
@@ -63,6 +68,8 @@ def groups_of(used: Collection[str]) -> set[str]:
 def shown_columns(names: Iterable[str], groups: Collection[str]) -> list[str]:
     """Columns of phases or moves, of the optional ones those of some groups alone."""
     hidden = {name for group, columns in OPTIONAL.items() if group not in groups for name in columns}
+    if "ramps" in groups and "unequal" not in groups and EVEN not in groups:
+        hidden.add(EVEN)
     return [name for name in names if name not in hidden]
 
 

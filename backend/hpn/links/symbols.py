@@ -12,7 +12,7 @@ from hpn.catalogue import Catalogue
 from hpn.documents.common import COMMON
 from hpn.engine.notice import AREAS
 from hpn.links import labels
-from hpn.links.rows import OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
+from hpn.links.rows import EVEN, OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
 from hpn.tables.inputs import NAME, PHASE, Input, Inputs
@@ -289,10 +289,10 @@ MECHANISM_SYMBOLS = (
 )
 """A mechanism and where its motion starts, in the order of a canonical link."""
 
-FIRST_OF_MECHANISM = ("d", "h", "ml", "J", "Tf")
+FIRST_OF_MECHANISM = ("d", "h", "ml", "mc", "J", "Tf")
 """Inputs of a mechanism that nearly every one needs, as the form shows them; the others are folded."""
 
-_IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "mc", "b", "mu", "Ff", "etam", "im")
+_IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "b", "mu", "Ff", "etam", "im")
 
 _OF_TURNING = {
     "J": N_("Of everything that turns with pinion, pulley or screw."),
@@ -332,7 +332,7 @@ def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[S
             name, ("motion", "move", field), "text" if name == "mv" else "number", placeholder=_OF_A_MOVE.get(name, "")
         )
         for name, field in zip(
-            ("mv", "ms", "mt", "mn", "ma", "mj", *OPTIONAL["jerk"], "mx", *OPTIONAL["ramps"]),
+            ("mv", "ms", "mt", "mn", "ma", "mj", *OPTIONAL["jerk"], "mx", *OPTIONAL["ramps"], *OPTIONAL["unequal"]),
             (*fields, *ramps),
             strict=True,
         )
@@ -358,10 +358,18 @@ BODY_SYMBOLS = (
 """Bodies of the form whose moment of inertia is worked out, repeated once per body; no link has them."""
 
 
+_PLACES = {
+    name: k
+    for k, name in enumerate((NAME.role, "mv", "ms", "mt", "mn", *OPTIONAL["ramps"], EVEN, *OPTIONAL["unequal"]))
+}
+"""Places of columns whose order in a table is another than in a link."""
+
+
 def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Symbol]:
-    """Columns of phases or moves that a table has, the name first."""
+    """Columns of phases or moves that a table has, the name first and the ramps of a move behind its speed."""
     by_name = {symbol.name: symbol for symbol in symbols}
-    return sorted((by_name[name] for name in shown_columns(by_name, groups)), key=lambda one: one.name != NAME.role)
+    shown = shown_columns(by_name, groups)
+    return [by_name[name] for name in sorted(shown, key=lambda name: _PLACES.get(name, len(_PLACES)))]
 
 
 def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:
@@ -376,7 +384,8 @@ def move_symbols(mechanism: str) -> tuple[Symbol, ...]:
 
 
 GROUPS = (
-    FormGroup("load", N_("Loads"), ("FR", "FA", "fw", "Tk", "Nk"), folded=False),
+    FormGroup("load", N_("Loads"), ("fm", "dt", "dd", "hx", "kb", "FR", "FA", "fw", "Tk", "Nk"), folded=False),
+    FormGroup("lever", N_("Where the loads act"), ("xR", "yA", "xc")),
     FormGroup(
         "wishes",
         N_("Requirements"),
@@ -389,11 +398,6 @@ GROUPS = (
         "brake",
         N_("Brake of the emergency stop"),
         ("TB", "tb", "tr", "nb", "TL", "To", "kd"),
-    ),
-    FormGroup(
-        "lever",
-        N_("Pinion or belt, load positions"),
-        ("fm", "dt", "dd", "hx", "kb", "xR", "yA", "xc"),
     ),
     FormGroup(
         "stiffness",

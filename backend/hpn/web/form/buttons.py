@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from hpn.application import Application
 from hpn.links.rows import OPTIONAL
-from hpn.web.form import helpers, offers, ways
+from hpn.web.form import helpers, offers, ramps, ways
 from hpn.web.form.given import REVERSES, Given
 
 MOST_PRESSES = 50
@@ -46,6 +46,9 @@ def _press(given: Given, do: str, what: str, application_of: Reads) -> str | Non
             focus = what.partition(":")[0]
         case "take":
             focus = f"way-{ways.PHASES}" if ways.take_over(given, application_of(given)) else None
+        case "ramps":
+            ramps.press(given, what, application_of)
+            focus = f"ramps-{what}" if what else do
         case _ if do in OPTIONAL:
             given.toggle(do)
         case "tolerances":

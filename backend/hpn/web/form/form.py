@@ -42,6 +42,7 @@ class Form:
     Of a motion the mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia
     may be worked out from. `tolerances` are those of a link that have no field of their own; those in fields do not
     count in a form that `is_exact`. `asides` are the inputs of other ways to give the cycle.
+    `sized` are the numbers by size of an input, as a reader sees them.
     `written` is the marker of the language and units in which a form was filled in; None for a link.
     """
 
@@ -66,6 +67,7 @@ class Form:
     condition: Mapping[str, str] = field(default_factory=dict)
     typed: str | None = None
     labels: Mapping[str, str] = field(default_factory=lambda: dict.fromkeys(LABELS, ""))
+    sized: Mapping[str, tuple[tuple[str, str], ...]] = field(default_factory=dict)
 
     @property
     def as_text(self) -> bool:
@@ -191,7 +193,8 @@ def for_reader(form: Form, reader: Reader) -> Form:
         tuple({name: next(texts) if name in units else text for name, text in table.items()} for table in part)
         for part in (form.rows, form.moves, form.bodies.rows, (single,))
     )
-    named |= {name: text.shown([next(texts) for _ in text.parts], reader) for name, text in sized.items()}
+    by_size = {name: tuple((part.place, next(texts)) for part in text.parts) for name, text in sized.items()}
+    named |= {name: text.shown([number for _, number in by_size[name]], reader) for name, text in sized.items()}
     told = iter([field_of(name, text, texts, units, reader) for name, text in parted])
     rows, moves, (named,) = (
         tuple({name: next(told) if name in INPUT_OF else text for name, text in table.items()} for table in part)
@@ -203,6 +206,7 @@ def for_reader(form: Form, reader: Reader) -> Form:
         moves=moves,
         bodies=replace(form.bodies, rows=bodies),
         texts=named,
+        sized=by_size,
         written=reader.marker,
         was=shown.was,
     )

@@ -9,7 +9,7 @@ from hpn.application.motion import MAXIMUM_MOVES
 from hpn.application.shaft_centre import MOST_SIZES
 from hpn.application.tolerances import MOST_TOLERANCES
 from hpn.links.labels import LABELS
-from hpn.links.rows import OF_ANY_ROW, SHARED, TEXT, TOLERANCE, FormTable, cells_of, groups_of, shown_columns
+from hpn.links.rows import EVEN, OF_ANY_ROW, SHARED, TEXT, TOLERANCE, FormTable, cells_of, groups_of, shown_columns
 from hpn.links.symbols import (
     BODY_BY_NAME,
     BY_NAME,
@@ -150,7 +150,10 @@ class Given:
     # --- Sorting ------------------------------------------------------------------------------------------------------
 
     def _write(self, name: str, text: str) -> None:
-        """Take one pair as it was typed."""
+        """Take one pair as it was typed; the form has a field for each size, as `xc.20A`."""
+        symbol, of_size, size = name.partition(".")
+        if of_size and symbol in BY_SIZE:
+            name, text = symbol, f"{size[:20]}: {text}" if text.strip() else ""
         if name == TEXT:
             self.typed = text.replace("\r\n", "\n")
             for column, cell in cells_of(text):
@@ -226,9 +229,12 @@ class Given:
     def _show(self) -> None:
         """Have the optional columns that are used."""
         self.shown = groups_of({**self.phases.counts, **self.moves.counts})
-        self._show_columns()
+        if any(row[EVEN].strip() for row in self.moves.rows):
+            self.shown.add(EVEN)
+        self.show_columns()
 
-    def _show_columns(self) -> None:
+    def show_columns(self) -> None:
+        """Have the columns of the groups that are shown."""
         apart = SHARED if self.has_motion else ()
         self.phases.show(self._with_tolerances(shown_columns(PHASE_BY_NAME, self.shown.difference(apart))))
         self.moves.show(self._with_tolerances(shown_columns(MOVE_BY_NAME, self.shown)))
@@ -244,7 +250,7 @@ class Given:
             if self.has_motion:
                 inputs.update(s.name for s in mechanism_symbols(self.scalars.get("mech", "").strip()))
             self.tolerances = place(self.tolerances, self.duty, inputs, self.scalars, self.single)
-            self._show_columns()
+            self.show_columns()
 
     @property
     def has_tolerances(self) -> bool:
@@ -262,7 +268,7 @@ class Given:
     def toggle(self, group: str) -> None:
         """Show or leave out a group of optional columns."""
         self.shown ^= {group}
-        self._show_columns()
+        self.show_columns()
 
     def toggle_tolerances(self) -> None:
         """Show the fields of tolerances, or put them out of sight and count; blank ones go."""
@@ -277,7 +283,7 @@ class Given:
             for names in (self.single, self.phases.counts, self.moves.counts):
                 for name in INPUT_OF.keys() & names.keys():
                     del names[name]
-        self._show_columns()
+        self.show_columns()
 
     def put(self, name: str, text: str) -> None:
         """Have a text as the only one of a single value."""

@@ -296,12 +296,22 @@ def _validated(
             name, index = own.name, own.index
         if error["type"] == "no_motion":
             name = "n"
+        error, name = _of_missing_cell(error, name)
         # Unreadable values are left out of the model, which then misses them, or the part that they belong to.
         consequence = known and error["type"] in ("no_motion", "no_load")
         refused_phases = error["type"] == "too_short" and any(map(filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:
             problems.append(FieldProblem(name, index, _refused(name, error)))
     return None, problems
+
+
+def _of_missing_cell(error: Any, name: str) -> tuple[Any, str]:
+    """Error and input of a move that lacks a figure: at the cell of that figure, which is what is missing."""
+    if error["type"] == "move_needs":
+        return {**error, "type": "missing"}, MOVE_BY_LEAF[error["ctx"]["field"]].name
+    if error["type"] in ("move_takes_two", "move_takes_one") and "time_s" not in error["ctx"]["given"]:
+        return error, "mt"
+    return error, name
 
 
 def _refused(name: str, error: Any) -> Sentence:
