@@ -29,7 +29,6 @@ CATALOGUE: Catalogue = load_catalogue()
 F_R, F_A = 1800.0, 2200.0
 """Published limits of size 20A."""
 
-SVG = "{http://www.w3.org/2000/svg}"
 CURVE = "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,print\n20A,1,1300,1200,print\n20A,1,0,1800,print\n"
 THREE = (
     phase(40, 250, 0.3, radial_N=900, axial_N=300),
@@ -61,7 +60,7 @@ class Shown:
 
     def of(self, name: str, kind: str) -> list[Element]:
         """Elements of a name whose class holds a kind."""
-        return [each for each in self.root.iter(SVG + name) if kind in each.get("class", "").split()]
+        return [each for each in self.root.iter(name) if kind in each.get("class", "").split()]
 
     @staticmethod
     def said(text: Element) -> str:
@@ -219,7 +218,7 @@ def test_a_load_beyond_the_single_limit_has_a_ring_a_cross_and_words_and_no_othe
         kinds = [each.get("class") for each in group]
         outside = place == "1"
         assert ("ring" in kinds) == ("cross" in kinds) == outside
-        assert ("outside the limit" in (group.findtext(SVG + "title") or "")) == outside
+        assert ("outside the limit" in (group.findtext("title") or "")) == outside
 
 
 # --- Places for texts -------------------------------------------------------------------------------------------------
@@ -228,7 +227,7 @@ def test_a_load_beyond_the_single_limit_has_a_ring_a_cross_and_words_and_no_othe
 def boxes(drawn: Shown) -> list[tuple[str, float, float, float, float]]:
     """Text, left, top, right and bottom of every text, by the widest of the usual fonts."""
     found = []
-    for text in drawn.root.iter(SVG + "text"):
+    for text in drawn.root.iter("text"):
         said, anchor = Shown.said(text), text.get("text-anchor")
         (x, y), width = Shown._at(text), 0.6 * LETTER * len(said)
         if turned := text.get("transform"):
@@ -287,7 +286,7 @@ def test_no_text_lies_over_another_and_each_stays_inside(
     _, _, width, height = map(float, drawing.get("viewBox", "").split())
     assert [said for said, left, top, right, bottom in texts if left < -1 or right > width + 1 or top < 0] == []
     assert all(bottom <= height for *_, bottom in texts)
-    groups = [(group.find(f"{SVG}rect[@class='disc']"), group.find(SVG + "circle")) for group in drawn.of("g", "mark")]
+    groups = [(group.find("rect[@class='disc']"), group.find("circle")) for group in drawn.of("g", "mark")]
     assert [dot for (disc, _), (_, dot) in combinations(groups, 2) if _is_over(dot, disc)] == []
     assert markup(drawing) == markup(drawing_of(picture, reader))
 

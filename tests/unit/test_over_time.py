@@ -19,7 +19,6 @@ from hpn.physics.motion import trace_of
 from hpn.words.reader import DEFAULT, Reader
 from tests.build import Json, cycle, phase
 from tests.reference.test_motion import CONTRACT, SCREW
-from tests.unit.test_envelope import SVG
 
 CATALOGUE: Catalogue = load_catalogue()
 EXAMPLE = (phase(40, 250, 0.3), phase(32, 500, 3), phase(-20, -250, 0.4))
@@ -37,7 +36,7 @@ class Shown:
 
     def of(self, name: str, kind: str) -> list[Element]:
         """Elements of a name whose class holds a kind."""
-        return [each for each in self.root.iter(SVG + name) if kind in each.get("class", "").split()]
+        return [each for each in self.root.iter(name) if kind in each.get("class", "").split()]
 
     def said(self, kind: str) -> list[str]:
         return ["".join(text.itertext()) for text in self.of("text", kind)]
@@ -79,14 +78,12 @@ def drawn(document: Json, reader: Reader = DEFAULT, governing: Sequence[int] = (
 
 def texts(shown: Shown, letter: float = 6.8) -> Iterator[tuple[str, float, float, float, float]]:
     """Text, left, right, top and bottom of every text, by the mean width of the page's letters; an index is smaller."""
-    for text in shown.root.iter(SVG + "text"):
+    for text in shown.root.iter("text"):
         said = "".join(text.itertext())
-        index = sum(
-            len("".join(part.itertext())) for part in text.iter(SVG + "tspan") if "index" in part.get("class", "")
-        )
+        index = sum(len("".join(part.itertext())) for part in text.iter("tspan") if "index" in part.get("class", ""))
         width = letter * (len(said) - 0.2 * index)
         x, y = float(text.get("x", "")), float(text.get("y", ""))
-        left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[text.get("text-anchor", "")] * width
+        left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[text.get("text-anchor", "start")] * width
         yield said, left, left + width, y - 9, y + 2
 
 
@@ -123,7 +120,7 @@ def test_the_cycle_is_drawn_within_its_frame_and_its_numbers_stand_apart(count: 
     assert min((after - before for before, after in pairwise(places)), default=18) >= 18  # a disc, and a little more
     assert len(markup(picture.drawing)) < 75_000
     _, _, width, height = map(float, picture.drawing.get("viewBox", "").split())
-    for path in shown.root.iter(SVG + "path"):
+    for path in shown.root.iter("path"):
         for x, y in re.findall(r"(-?[\d.]+) (-?[\d.]+)", path.get("d", "")):
             assert 0 <= float(x) <= width
             assert 0 <= float(y) <= height
@@ -158,7 +155,7 @@ def test_the_name_of_a_phase_is_the_title_of_its_step_and_stands_beside_its_numb
     phases = (phase(40, 250, 0.3), phase(32, 500, 3), phase(20, 50, 3))
     shown = drawn(cycle(*(one | {"name": name} for one, name in zip(phases, names, strict=True))))
 
-    assert [step.findtext(SVG + "title") for step in shown.of("rect", "phase-step")] == names
+    assert [step.findtext("title") for step in shown.of("rect", "phase-step")] == names
     assert shown.said("phase-name") == ["go back"]
     assert sorted(shown.said("number")) == ["1", "2", "3"]
 

@@ -30,7 +30,7 @@ ROOM = 1.15
 MOST_SPACES, GAP = 6, 8.0
 """Most spaces between round numbers, and the least one between two of them, in units of the drawing."""
 
-RADIUS, DOT, RING = 10.5, 2.5, 13.5
+RADIUS, DOT, RING = 9.0, 2.5, 12.0
 MARGIN = 3.5
 SAME, REACH = 0.1, 130.0
 """Loads nearer than the first are one to the eye; those beyond the second are out of reach of a disc."""

@@ -20,7 +20,7 @@ WIDTH, RIGHT = 344.0, 234.0
 LETTER, TITLE, ROW, BETWEEN = 13.0, 19.0, 25.0, 8.0
 """Least distance of two texts below each other, and heights of a title, of the numbers of phases, and of a gap."""
 
-RADIUS, APART = 8.5, 18.0
+RADIUS, APART = 9.0, 18.0
 """Radius of the number of a phase, and the least distance of two."""
 
 NAMED_LETTERS = 14.8

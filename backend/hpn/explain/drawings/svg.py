@@ -8,6 +8,9 @@ from hpn.words.symbols import sentence
 
 Point = tuple[float, float]
 
+NAMESPACE = "http://www.w3.org/2000/svg"
+"""Namespace of a drawing that stands alone; in a page the name of the element says it."""
+
 LETTER = 14.0
 """Size of a letter, in units of a drawing, that texts have room for; a style sheet may only set smaller ones."""
 
@@ -21,7 +24,7 @@ WIDE = 0.64
 def canvas(kind: str, width: float, height: float) -> Element:
     """An empty drawing of a kind that the style sheet knows."""
     box = f"0 0 {written(width)} {written(height)}"
-    return Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "class": f"drawing {kind}", "viewBox": box})
+    return Element("svg", {"class": f"drawing {kind}", "viewBox": box})
 
 
 def add(parent: Element, name: str, kind: str, **attributes: float | str) -> Element:
@@ -37,7 +40,7 @@ def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "sta
 
 def runs(parent: Element, kind: str, at: Point, parts: Iterable[tuple[str, str]], anchor: str = "start") -> Element:
     """Add a text of several parts, each of a kind of its own, a space between two."""
-    element = add(parent, "text", kind, x=at[0], y=at[1], text_anchor=anchor)
+    element = add(parent, "text", kind, x=at[0], y=at[1], **({} if anchor == "start" else {"text_anchor": anchor}))
     lowered = False
     for place, (own, content) in enumerate(parts):
         for part in sentence("\N{EN SPACE}" * (place > 0) + content):
@@ -75,10 +78,10 @@ def written(value: float | str) -> str:
 
 
 def markup(drawing: Element, style: str = "") -> str:
-    """A drawing as text; with a style sheet of its own where no page is around it."""
+    """A drawing as text; with its namespace and a style sheet of its own where no page is around it."""
     if not style:
         return tostring(drawing, encoding="unicode")
-    alone = Element(drawing.tag, drawing.attrib)
+    alone = Element(drawing.tag, {"xmlns": NAMESPACE, **drawing.attrib})
     SubElement(alone, "style").text = style
     alone.extend(drawing)
     return tostring(alone, encoding="unicode")
