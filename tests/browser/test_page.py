@@ -51,7 +51,7 @@ def test_first_visit_shows_the_worked_example_and_its_answer(visitor: Visitor) -
     expect(selected(page)).to_contain_text("suitable")
     expect(torque(page, 1)).to_have_value("40")
     verdict = page.get_by_role("region", name="Result")
-    expect(verdict.get_by_text("governs").first).to_be_in_viewport()
+    expect(verdict.get_by_text("decides").first).to_be_in_viewport()
     expect(verdict.get_by_text("Worked example of the handbook")).to_be_in_viewport()
     expect(verdict.get_by_text("The lightest gear that passes every check.")).to_be_in_viewport()
 

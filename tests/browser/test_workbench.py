@@ -34,7 +34,9 @@ CLASHES = """() => {
   while (walker.nextNode()) {
     const node = walker.currentNode, owner = node.parentElement;
     const turned = 'text[transform*="rotate"]'; // is larger than its letters, which the tests of plots compare
-    const aside = `.subject, .visually-hidden, .skip, option, dialog, [popover], .jump, math, sub, script, ${turned}`;
+    const drawn = '.mark.pass, .mark.fail'; // whose letters are out of sight, for copying
+    const never = '.subject, .visually-hidden, .skip, option, dialog, [popover], .jump, math, sub, script';
+    const aside = `${never}, ${drawn}, ${turned}`;
     if (!node.textContent.trim() || owner.closest(aside)) continue;
     if (!owner.checkVisibility({ opacityProperty: true, visibilityProperty: true })) continue;
     const range = document.createRange();
@@ -65,7 +67,9 @@ CUT = """() => [...document.querySelectorAll("main svg text")].filter(text => {
 SMALL = """() => [...document.querySelectorAll("main *, header *")].filter(element =>
   [...element.childNodes].some(node => node.nodeType === 3 && node.textContent.trim())
   && element.checkVisibility() && !element.closest(".visually-hidden, option, math, svg")
-  && parseFloat(getComputedStyle(element).fontSize) < 11).map(element => element.textContent.trim())"""
+  && parseFloat(getComputedStyle(element).fontSize) < (element.closest("sub") ? 10 : 12.5))
+  .map(element => element.textContent.trim())"""
+"""Texts smaller than the smallest of the five sizes; indices have 10 px at every size, as in the PDF."""
 
 
 def read_german(page: Page) -> None:

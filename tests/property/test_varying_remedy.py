@@ -177,7 +177,7 @@ def test_a_motor_that_turns_its_own_inertia_leaves_no_closed_form_and_says_why()
     selection = select(Application.model_validate(asked), equipped())
     assert selection.foremost.reserve.torque_factor is selection.foremost.reserve.speed_factor is None
     told = {growth.bound.text for growth in growths_of(selection.foremost)["motor_peak_torque"]}
-    assert told == {"not in closed form: the motor’s own inertia follows the motion"}
+    assert told == {"no single factor: the motor’s own inertia changes with the motion"}
 
 
 def test_a_load_that_has_to_drop_drops_in_the_moves() -> None:
@@ -209,7 +209,7 @@ def test_a_speed_that_has_to_drop_promises_nothing_where_the_motor_turns_its_own
         remedy = remedy_of(candidate, ways[inertia])
         assert remedy is not None
         assert (
-            "The change that would make it fit is not in closed form: the motor’s own inertia" in remedy.text
+            "The change that would make it fit is no single factor: the motor’s own inertia" in remedy.text
         ) == bool(inertia)
     assert ways[1e-6] == ()
     assert [(alternative.way.torque, alternative.way.speed < 1) for alternative in ways[None]] == [(1.0, True)]

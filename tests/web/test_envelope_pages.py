@@ -129,7 +129,7 @@ def test_the_saved_page_has_the_chart_of_the_cycle_the_envelope_and_the_life_of_
     bearing = section(page, "bearing")
     assert 'class="line limit"' in bearing
     if query == LOADED:
-        assert "The largest single load governs." in bearing
+        assert "The largest single load decides." in bearing
         drawn = [phases(drawing, "mark load") for drawing in drawings_in(bearing) if 'class="drawing' in drawing]
         assert drawn == 2 * [["0", "1", "2"]]  # for a narrow and for a wide place
         assert "75\u202f594" in unescape(bearing)

@@ -152,7 +152,7 @@ STOP_LOADS = ("load_torque_Nm", "opposing_torque_Nm")
 
 
 class EmergencyStop(Model):
-    """Momentary peak torque T_k, or the brake that causes it, and how often it is expected over the life."""
+    """Emergency-stop torque T_k, or the brake that causes it, and how often it is expected over the life."""
 
     torque_Nm: Torque | None = Field(None, description="Emergency-stop torque T_k.", examples=[200.0])
     brake: Brake | None = Field(

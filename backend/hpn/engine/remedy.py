@@ -202,10 +202,10 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
 
 # --- In words ---------------------------------------------------------------------------------------------------------
 
-BY_CURVE = N_("not in closed form: the efficiency follows your curve, or the gear’s no-load torque counts")
-BY_INERTIA = N_("not in closed form: the motor’s own inertia follows the motion")
+BY_CURVE = N_("no single factor: the efficiency follows your curve, or the gear’s no-load torque counts")
+BY_INERTIA = N_("no single factor: the motor’s own inertia changes with the motion")
 BY_SHAFT = N_(
-    "not in closed form: pinion or pulley load the shaft, less with a larger pitch diameter, a smaller tension factor "
+    "no single factor: pinion or pulley load the shaft, less with a larger pitch diameter, a smaller tension factor "
     "or a smaller distance x"
 )
 UNTOLD = N_("The change that would make it fit is {reason}.")

@@ -124,13 +124,13 @@ def momentary_peak_torque_utilisation(
 
 @equation
 def momentary_peaks_at(*, emergency_stop_torque_Nm: ArrayLike, repeated_peak_torque_Nm: ArrayLike) -> FloatArray:
-    """Number of momentary peak torques 10^(8.5 - 1.5 T_k / T_R) of equation 17.9, not rounded to a count [-]."""
+    """Number of emergency stops 10^(8.5 - 1.5 T_k / T_R) of equation 17.9, not rounded to a count [-]."""
     return np.power(10.0, 8.5 - 1.5 * np.divide(emergency_stop_torque_Nm, repeated_peak_torque_Nm))
 
 
 @equation
 def allowed_momentary_peaks(*, emergency_stop_torque_Nm: ArrayLike, repeated_peak_torque_Nm: ArrayLike) -> FloatArray:
-    """Allowable number of momentary peak torques N_k max = 10^(8.5 - 1.5 T_k / T_R), equation 17.9 [-].
+    """Allowable number of emergency stops N_k max = 10^(8.5 - 1.5 T_k / T_R), equation 17.9 [-].
 
     A count, so it is rounded down. Holds for T_k > T_R; at or below T_R this equation sets no limit: infinite.
     NaN where T_R is not published.

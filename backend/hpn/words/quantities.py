@@ -237,7 +237,7 @@ CANDIDATE: Mapping[str, Named] = {
         "The same as a length at the given radius; null without one.",
     ),
     "stop_torque_Nm": Named(
-        N_("Torque of the emergency stop"),
+        N_("Emergency-stop torque"),
         "T_k",
         "Torque of the gear in an emergency stop: as given, else the bound that the brake gives.",
     ),

@@ -35,7 +35,7 @@ def bearing_verdict(picture: BearingPicture) -> Sentence:
 def bearing_words(picture: BearingPicture) -> list[Sentence]:
     """The governing limit, both utilisations, which loads are outside, and what the next printed f_w would come to."""
     governs = (
-        Sentence("Bearing life governs.") if picture.life_governs else Sentence("The largest single load governs.")
+        Sentence("Bearing life decides.") if picture.life_governs else Sentence("The largest single load decides.")
     )
     values: dict[str, Value] = {
         "used": share(picture.constant_load_utilisation, picture.allowed),

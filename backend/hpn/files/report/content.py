@@ -38,7 +38,7 @@ LABELS = {
     "approved": N_("Approved"),
     "sign": N_("name, date, signature"),
     "largest": N_("Largest utilisation"),
-    "governs": N_("governs"),
+    "governs": N_("decides"),
     "given": N_("Loads and requirements"),
     "phases": N_("Duty cycle"),
     "phases_of_motion": PHASES_TITLE,
