@@ -193,7 +193,7 @@ def test_no_link_and_no_file_is_of_the_inputs_before(visitor: Visitor, typed: st
     expect(page.locator(".verdict .outdated")).to_be_visible()
     reason = page.get_by_text("No link and no file: the result is out of date.")
     button(page, "Other files").click()
-    for name in ("Copy link", "PDF", "Workbook", "Duty cycle as CSV"):
+    for name in ("Copy link", "PDF", "Workbook XLSX", "Duty cycle CSV"):
         page.locator("#commands").get_by_text(name, exact=True).dispatch_event("click")
         expect(reason).to_be_visible()
     assert page.evaluate("window.copied") is None

@@ -187,7 +187,7 @@ def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visi
     page.get_by_label("Load coefficient").fill("1.3")
     expect(page).to_have_url(re.compile("fw=1.3"))
     assert once(page, lambda state: 1.3 in curves(state["data"]))["ranges"] == part
-    page.get_by_role("button", name="Whole view").click()
+    page.get_by_role("button", name="Whole", exact=True).click()
     assert drawn(page)["ranges"] == whole
 
 
@@ -196,7 +196,8 @@ def test_plot_is_saved_without_any_service(visitor: Visitor, tmp_path: Path, for
     page = visitor.open(PHASES + "#bearing")
     plot(page)
     with page.expect_download() as download:
-        section(page).get_by_role("button", name=f"Save as {format}").first.click()
+        section(page).get_by_role("button", name="Save figure").first.click()
+        section(page).get_by_role("button", name=format).first.click()
     path = tmp_path / download.value.suggested_filename
     download.value.save_as(path)
     content = path.read_bytes()
@@ -240,7 +241,7 @@ def test_without_script_sentence_and_tables_say_it_all(visitor: Visitor) -> None
     page.get_by_text("Data: loads and curves as tables").click()
     expect(page.get_by_role("table", name="Loads of the phases").get_by_role("row")).to_have_count(5)
     expect(page.get_by_role("table", name="Sizes that carry the load")).to_be_visible()
-    expect(page.get_by_role("button", name="Save as SVG")).to_have_count(0)
+    expect(page.get_by_role("button", name="Save figure")).to_have_count(0)
 
 
 def test_a_size_without_published_limits_says_why_it_has_no_envelope(visitor: Visitor) -> None:

@@ -139,7 +139,7 @@ def test_long_table_is_edited_as_text_and_kept_as_a_file(visitor: Visitor, tmp_p
     expect(page).to_have_url(re.compile("/paste$"))
     button(page, "Other files").click()
     with page.expect_download() as download:
-        button(page, "Duty cycle as CSV").click()
+        button(page, "Duty cycle CSV").click()
     assert Path(download.value.path()).read_text().count("\n") == 3501
     button(page, "Undo").click()
     expect(torque(page, 3)).to_have_value("20")
@@ -150,7 +150,7 @@ def test_application_leaves_as_a_file_and_comes_back(visitor: Visitor, tmp_path:
     page = visitor.open(EXAMPLE)
     button(page, "Other files").click()
     with page.expect_download() as download:
-        page.get_by_role("button", name="Application as JSON").click()
+        page.get_by_role("button", name="Application JSON").click()
     file = tmp_path / "application.json"
     download.value.save_as(file)
     page.goto(visitor.server + "/?T=&n=&t=")

@@ -46,14 +46,14 @@ class Shown:
         children = list(self.root)
         start = [k for k, each in enumerate(children) if each.get("class") == "title"][place]
         line = next(k for k in range(start, len(children)) if children[k].get("class") == kind)
-        ticks = [each for each in children[start:line] if each.get("class") == "tick"]
+        ticks = [each for each in children[start:line] if "tick" in each.get("class", "").split()]
         (y0, v0), (y1, v1) = ((float(t.get("y", "")), self.number(t)) for t in (ticks[0], ticks[-1]))
         heights = [float(y) + 4 for _, y in re.findall(r"(-?[\d.]+) (-?[\d.]+)", children[line].get("d", ""))]
         return [v0 + (y - y0) * (v1 - v0) / (y1 - y0) for y in heights]
 
     @staticmethod
     def number(text: Element) -> float:
-        return float("".join(text.itertext()).replace("\u202f", "").replace("\N{MINUS SIGN}", "-"))
+        return float("".join(text.itertext()).replace("\u202f", "").replace("\N{MINUS SIGN}", "-").replace(",", "."))
 
 
 def subject_of(document: Json, designation: str = "HPN-20A-5") -> Subject:

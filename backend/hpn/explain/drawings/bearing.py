@@ -8,7 +8,7 @@ from hpn.application import OutputLoad
 from hpn.catalogue.gear import Gear
 from hpn.explain.drawings.axis import widened
 from hpn.explain.drawings.chart import LimitCurve, Mark, Scene
-from hpn.explain.drawings.layout import Figure, layout, points
+from hpn.explain.drawings.layout import LETTER, Figure, layout, points
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad
 from hpn.explain.drawings.sizes import SizeUse
 from hpn.explain.drawings.svg import Point
@@ -16,9 +16,6 @@ from hpn.explain.drawings.words import axis_title, indexed, said, shown
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.terms import ENVELOPE_BASIS
 from hpn.words.wording import N_, Quantity, Sentence, Value
-
-NAME_HEIGHT, NAME_WIDTH = 0.06, 0.15
-"""Least distance of two names of curves on the axial and the radial axis, as shares of the axes."""
 
 HALO = ", ".join(f"{x}px {y}px 1px var(--card)" for x in (-1, 1) for y in (-1, 1))
 """Shadow that keeps a label apart from the lines behind it."""
@@ -51,11 +48,10 @@ def sizes_figure(scene: Scene, uses: Sequence[SizeUse], picture: BearingPicture,
 
 def _figure(scene: Scene, gear: Gear | None, picture: BearingPicture, heading: Sentence, reader: Reader) -> Figure:
     lines = sorted(scene.lines, key=lambda line: line.strong)
-    ends = _ends(lines, _reach(gear, picture.loads))
-    data = [_curve(line, end, reader) for line, end in zip(lines, ends, strict=True)]
+    data = [_curve(line, reader) for line in lines]
     if scene.ray:
         data.append(_distance(scene.ray, reader))
-    for kind, symbol, size in (("given", "circle-open", 9), ("equivalent", "circle-open", 11), ("load", "diamond", 10)):
+    for kind, symbol, size in (("given", "circle-open", 9), ("equivalent", "circle-open", 11), ("load", "circle", 9)):
         marks = [mark for mark in scene.marks if mark.kind.split()[0] == kind]
         if marks:
             others = [mark.place for mark in scene.marks if mark not in marks]
@@ -66,39 +62,22 @@ def _figure(scene: Scene, gear: Gear | None, picture: BearingPicture, heading: S
 # --- Curves -----------------------------------------------------------------------------------------------------------
 
 
-def _ends(lines: Sequence[LimitCurve], reach: Point) -> list[int]:
-    """Corner of each curve for its name, 0 or -1: that with most room, up to what a name needs on each axis."""
-    needed = {0: NAME_HEIGHT * reach[1], -1: NAME_WIDTH * reach[0]}
-    taken: dict[int, list[float]] = {0: [], -1: []}
-    ends = []
-    for line in lines:
-        at = {0: line.corners[0][1], -1: line.corners[-1][0]}
-        room = {end: min((abs(at[end] - other) / needed[end] for other in taken[end]), default=1.0) for end in at}
-        end = max((-1, 0) if line.kind.startswith("single") else (0, -1), key=lambda end: min(room[end], 1.0))
-        taken[end].append(at[end])
-        ends.append(end)
-    return ends
-
-
-def _curve(line: LimitCurve, end: int, reader: Reader) -> Figure:
-    """Curve with its name at one of its ends."""
+def _curve(line: LimitCurve, reader: Reader) -> Figure:
+    """Curve with its name, which the page sets along the part that is in sight."""
     radial, axial = zip(*line.corners, strict=True)
     kind, *states = line.kind.split()
     colour = "var(--governing)" if "governing" in states else "var(--ink)" if line.strong else "var(--muted)"
     dash = next((DASHES[one] for one in (kind, *states) if one in DASHES), "solid")
     figure: Figure = {
         "type": "scatter",
-        "mode": "lines+text",
+        "mode": "lines",
         "name": indexed(line.told),
-        "text": [indexed(line.label) if corner == end % len(radial) else "" for corner in range(len(radial))],
-        "textposition": "top right",
-        "textfont": {"size": 12, "shadow": HALO, "color": colour},
         "x": shown(radial, "N", reader),
         "y": shown(axial, "N", reader),
         "line": {"color": colour, "width": 3 if line.strong else 1.5, "dash": dash},
         "hovertext": [f"{indexed(line.told)}<br>{_spelt(*corner, reader)}" for corner in line.corners],
         "hoverinfo": "text",
-        "meta": {"kind": kind, "load_coefficient": line.load_coefficient},
+        "meta": {"kind": kind, "load_coefficient": line.load_coefficient, "label": indexed(line.label), "halo": HALO},
     }
     return figure | ({"fill": "tozeroy", "fillcolor": "var(--area)"} if line.strong else {})
 
@@ -143,7 +122,7 @@ def _points(
         "y": shown((mark.place[1] for mark in marks), "N", reader),
         "text": list(map(indexed, texts)),
         "textposition": _positions([mark.place for mark in marks], others),
-        "textfont": {"color": "var(--ink)", "size": 12, "shadow": HALO},
+        "textfont": {"color": "var(--ink)", "size": LETTER, "shadow": HALO},
         "hovertext": [indexed(escape(mark.told)) for mark in marks],
     }
 

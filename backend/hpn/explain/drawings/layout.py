@@ -6,6 +6,9 @@ from hpn.words.reader import Reader
 
 Figure = dict[str, Any]
 
+LETTER = 12.5
+"""Size of all letters in pixels, the smallest of the page."""
+
 _AXIS = {
     "tickmode": "auto",
     "rangemode": "tozero",
@@ -22,13 +25,13 @@ _AXIS = {
 def layout(reader: Reader, x: str, y: str, *, title: str, note: str = "", revision: str = "") -> Figure:
     """Layout of a plot. `title` and `note` stand on what is saved as a picture, where the page is not around it."""
     return {
-        "xaxis": {**_AXIS, "title": {"text": x, "standoff": 10}},
-        "yaxis": {**_AXIS, "title": {"text": y, "standoff": 12}, "automargin": True},
+        "xaxis": {**_AXIS, "title": {"text": x, "standoff": 10, "font": {"size": LETTER}}},
+        "yaxis": {**_AXIS, "title": {"text": y, "standoff": 12, "font": {"size": LETTER}}, "automargin": True},
         "showlegend": False,
         "margin": {"l": 68, "r": 18, "t": 22, "b": 52},
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "rgba(0,0,0,0)",
-        "font": {"color": "var(--ink)", "size": 13},
+        "font": {"color": "var(--ink)", "size": LETTER},
         "hoverlabel": {"bgcolor": "var(--card)", "bordercolor": "var(--edge)", "font": {"color": "var(--ink)"}},
         "hovermode": "closest",
         "separators": reader.decimal + reader.group,

@@ -8,7 +8,6 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
-from hpn.explain.drawings.axis import round_numbers
 from hpn.explain.drawings.svg import Point, add, canvas, path, runs, text, width_of
 from hpn.explain.drawings.words import axis_title
 from hpn.physics.equations import FloatArray
@@ -20,8 +19,11 @@ WIDTH, RIGHT = 344.0, 234.0
 LETTER, TITLE, ROW, BETWEEN = 13.0, 19.0, 25.0, 8.0
 """Least distance of two texts below each other, and heights of a title, of the numbers of phases, and of a gap."""
 
-RADIUS, APART = 9.0, 18.0
-"""Radius of the number of a phase, and the least distance of two."""
+RADIUS, APART, SHIFTS = 9.0, 18.0, (0.0, 2.0, -2.0, 4.0, -4.0, 6.0, -6.0, 8.0)
+"""Radius of the number of a phase, the least distance of two, and how far each may stand off its phase's middle."""
+
+CAPITAL = 9.0
+"""Height of a figure."""
 
 NAMED_LETTERS = 14.8
 """Letters of a limit and its value that have room at the right; those of an index count four fifths."""
@@ -60,10 +62,15 @@ class Panel:
     peaks: FloatArray | None = None
 
     @cached_property
-    def range(self) -> Point:
-        """From the smallest to the largest value, 0 and the levels that are near them included."""
+    def extremes(self) -> Point:
+        """Smallest and largest value, 0 included."""
         known = self.values if self.peaks is None else np.concatenate((self.values.ravel(), self.peaks.ravel()))
-        low, high = min(known.min().item(), 0.0), max(known.max().item(), 0.0)
+        return min(known.min().item(), 0.0), max(known.max().item(), 0.0)
+
+    @cached_property
+    def range(self) -> Point:
+        """From the smallest to the largest value, and the levels that are near them."""
+        low, high = self.extremes
         reach = max(-low, high) * OUT_OF_SCALE
         high = max(high, *(level.value for level in self.levels if level.value <= reach), 0.0)
         return (low, high) if high > low else (0.0, 1.0)
@@ -105,18 +112,17 @@ class TimeAxis:
 
 def axis_left(panels: Sequence[Panel], reader: Reader) -> float:
     """Left end of the time axis, so that the numbers of all panels have room beside it."""
-    return 8 + SMALLER * max(width_of(label) for panel in panels for _, label in _ticks(panel, reader))
+    return 8 + SMALLER * max(width_of(_figure(value, panel, reader)) for panel in panels for value in _ticks(panel))
 
 
 def over_time(panels: Sequence[Panel], axis: TimeAxis, reader: Reader, governing: Sequence[int] = ()) -> Element:
     """Drawing of panels on one time axis; the phases that govern stand out."""
-    left = axis.x.item(0)
     tops = _tops(panels, axis, reader)
     bottom = tops[-1] + panels[-1].height
     drawing = canvas("over-time", WIDTH, bottom + (ROW if axis.row == len(panels) - 1 else 0.0) + 8)
     _stretches(drawing, axis, (tops[0], bottom), governing)
     for top, panel in zip(tops, panels, strict=True):
-        _panel(drawing, panel, top, left, axis.x, reader)
+        _panel(drawing, panel, top, axis, reader)
     _numbers(drawing, axis, tops[axis.row] + panels[axis.row].height + ROW / 2, governing)
     return drawing
 
@@ -160,13 +166,14 @@ def _of(stretch: Stretch) -> str:
 # --- One panel --------------------------------------------------------------------------------------------------------
 
 
-def _panel(drawing: Element, panel: Panel, top: float, left: float, x: FloatArray, reader: Reader) -> None:
+def _panel(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: Reader) -> None:
+    x, left = axis.x, axis.x.item(0)
     title = axis_title(panel.quantity, panel.unit, reader)
     text(drawing, "title", (0.0, top - 6 - (LETTER if _is_crowded(panel, reader) else 0.0)), title)
-    values, labels = zip(*_ticks(panel, reader), strict=True)
-    for at, label in zip(_heights(panel, top, np.array(values)).tolist(), labels, strict=True):
+    ticks = _ticks(panel)
+    for value, at in zip(ticks, _heights(panel, top, np.array(ticks)).tolist(), strict=True):
         add(drawing, "path", "axis", d=path([(left - 3, at), (left, at)]))
-        text(drawing, "tick", (left - 6, at + 4.0), label, "end")
+        text(drawing, "tick own" if value else "tick", (left - 6, at + 4.0), _figure(value, panel, reader), "end")
     zero = _heights(panel, top, np.zeros(1)).item()
     points = _thinned(x, _heights(panel, top, panel.values))
     outline = [(left, zero), *points, (points[-1][0], zero)]
@@ -176,6 +183,7 @@ def _panel(drawing: Element, panel: Panel, top: float, left: float, x: FloatArra
         add(drawing, "path", "peaks", d=path(_thinned(x, _heights(panel, top, panel.peaks))))
     add(drawing, "path", "steps", d=path(outline))
     _levels(drawing, panel, top, left, reader)
+    _peaks(drawing, panel, top, axis, reader)
 
 
 def _heights(panel: Panel, top: float, values: FloatArray) -> FloatArray:
@@ -184,15 +192,58 @@ def _heights(panel: Panel, top: float, values: FloatArray) -> FloatArray:
     return top + panel.height * ((high - values) / (high - low))
 
 
-def _ticks(panel: Panel, reader: Reader) -> list[tuple[float, str]]:
-    """Round numbers of the reader's unit, as many as have room: each in the unit of the wire, and as it is written."""
-    low, high = panel.range
-    start, end = (reader.measure(panel.unit).shown(value) for value in (low, high))
-    spaces = int(panel.height // (1.4 * LETTER))
-    numbers = round_numbers(start, end, spaces)
-    if len(numbers) < 2:
-        numbers = round_numbers(start, end, spaces + 2) or [0.0]
-    return [(low + (number - start) / (end - start) * (high - low), reader.tick(number)) for number in numbers]
+def _ticks(panel: Panel) -> list[float]:
+    """The peaks and 0, as many as have room: the largest first, then 0."""
+    low, high = panel.range if panel.extremes == (0.0, 0.0) else panel.extremes
+    apart = LETTER / panel.height * HEADROOM * (panel.range[1] - panel.range[0])
+    found = list[float]()
+    for value in (max(low, high, key=abs), 0.0, min(low, high, key=abs)):
+        if all(abs(value - other) >= apart for other in found):
+            found.append(value)
+    return found
+
+
+def _figure(value: float, panel: Panel, reader: Reader) -> str:
+    """A value as it stands on an axis or at its step."""
+    shown = reader.measure(panel.unit).shown(value)
+    return reader.figure(value, panel.unit) if 1e-3 <= abs(shown) < 1e6 else reader.tick(shown)
+
+
+def _peaks(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: Reader) -> None:
+    """Peaks that the axis does not name, at their place of the curve: none over a level or over one another."""
+    if len(axis.numbered) > MOST_BOUNDARIES:
+        return
+    peaks = [_peak(panel, axis.x, stretch) for stretch in axis.numbered]
+    lines = _heights(panel, top, np.array([0.0, *(level.value for level in panel.levels)])).tolist()
+    named = {_figure(value, panel, reader) for value in _ticks(panel)}
+    taken = axis.x.item(0) + 1
+    for k, (x, value) in enumerate(peaks):
+        beside = [other for _, other in (*peaks[max(k - 1, 0) : k], *peaks[k + 1 : k + 2]) if other * value > 0]
+        label = _figure(value, panel, reader)
+        half = SMALLER / 2 * width_of(label)
+        baseline = _baseline(_heights(panel, top, np.array([value])).item(), value, (top, top + panel.height), lines)
+        if label in named or any(abs(other) >= abs(value) for other in beside) or baseline is None:
+            continue
+        if taken <= x - half and x + half <= RIGHT + 4:
+            text(drawing, "peak", (x, baseline), label, "middle")
+            taken = x + half + 4
+
+
+def _peak(panel: Panel, x: FloatArray, stretch: Stretch) -> Point:
+    """Place and value of the peak of a stretch; the middle of those that are alike."""
+    values = panel.values if panel.peaks is None else panel.peaks
+    own = (stretch.start <= x.mean(axis=1)) & (x.mean(axis=1) <= stretch.end)
+    sizes = np.abs(values[own])
+    highest = sizes >= sizes.max() * (1 - 1e-9)
+    return x[own][highest].mean().item(), values[own][highest].item(0)
+
+
+def _baseline(at: float, value: float, ends: Point, lines: Sequence[float]) -> float | None:
+    """Baseline of the figure of a peak: beyond the curve, within its panel, and over no line."""
+    baseline = at - 4 if value > 0 else at + 4 + CAPITAL
+    inside = ends[0] - 1 <= baseline - CAPITAL and baseline <= ends[1] + 2
+    clear = all(line <= baseline - CAPITAL - 1 or baseline + 1 <= line for line in lines)
+    return baseline if inside and clear else None
 
 
 def _named(level: Level, panel: Panel, reader: Reader) -> str:
@@ -205,7 +256,7 @@ def _levels(drawing: Element, panel: Panel, top: float, left: float, reader: Rea
     shown = [level for level in levels if not panel.is_beyond(level)]
     lines = _heights(panel, top, np.array([level.value for level in shown])).tolist()
     beyond = [(level.kind, f"↑ {_named(level, panel, reader)}") for level in levels if panel.is_beyond(level)]
-    first = top + (9 if beyond else 0)
+    first = top + (11 if beyond else 0)
     for level, line, place in zip(shown, lines, _spread(lines, first, top + panel.height + 4), strict=True):
         add(drawing, "path", f"level {level.kind}", d=path([(left, line), (RIGHT + 4, line)]))
         name = _named(level, panel, reader)
@@ -273,8 +324,9 @@ def _numbers(drawing: Element, axis: TimeAxis, y: float, governing: Sequence[int
         put("phase", f"1 … {len(axis.numbered)}", width_of("1 … 10000") / 2, middle)
     else:
         for number, stretch in enumerate(axis.numbered, 1):
-            if first_free(APART / 2, stretch.middle) is not None:
-                _number(drawing, stretch, number, y, governing)
+            places = (stretch.middle + shift for shift in SHIFTS)
+            if (x := first_free(APART / 2, *places)) is not None:
+                _number(drawing, stretch, number, (x, y), governing)
     times = [(x, label, SMALLER / 2 * width_of(label) + 1) for x, label in axis.times]
     for x, label, half in times[-1:]:
         put("tick", label, half, x, x + half)
@@ -284,15 +336,16 @@ def _numbers(drawing: Element, axis: TimeAxis, y: float, governing: Sequence[int
         put("tick", label, half, x)
 
 
-def _number(drawing: Element, stretch: Stretch, number: int, y: float, governing: Sequence[int]) -> None:
+def _number(drawing: Element, stretch: Stretch, number: int, at: Point, governing: Sequence[int]) -> None:
     """Number of a stretch in a disc, with its name beside it where both have room."""
     state = " governing" if set(stretch.phases) & set(governing) else ""
     group = add(drawing, "g", f"mark{state}", data_phase=_of(stretch))
     needed = 2 * RADIUS + 4 + SMALLER * width_of(stretch.name)
-    x = stretch.middle - (needed / 2 - RADIUS if stretch.name and needed + 4 <= stretch.end - stretch.start else 0.0)
+    (middle, y), named = at, stretch.name and needed + 4 <= stretch.end - stretch.start
+    x = middle - (needed / 2 - RADIUS if named else 0.0)
     add(group, "circle", "disc", cx=x, cy=y, r=RADIUS)
     text(group, "number", (x, y + 4.2), str(number), "middle")
-    if x < stretch.middle:
+    if named:
         text(group, "phase-name", (x + RADIUS + 4, y + 4.2), stretch.name)
 
 
