@@ -40,9 +40,9 @@ UNTRANSLATED = re.compile(
     r"\b[0-9a-f]{16}\b|"
     r"PYRONOC UNIVERSAL 00|"
     r"HPN Select|HPN(-\w+)*|Deutsch|English|\b\d+A\b|\bSI\b|\bUS\b|ISO 281|\bJ\d\b|[\w.-]+\.csv|HPN_\w+|\bM\d+\b"
-    r"|strange|\bm[sj]\b|\brg\b|\bdwell\b|^\s*(av|in|out|rms|mot|k)(,(av|max|N))?(\(max\))?\s*$|JSON|CSV|PDF|PNG|SVG|Ctrl|Alt|Enter|Esc|Strg|Shift|Tab|xx\.xx|AAS|BH-AF1|\bLb\d+\b|L10|L50|\bL\d+\b"
+    r"|strange|\b[A-Za-z]_\w+(,\w+)*|\bm[sj]\b|\brg\b|\bdwell\b|^\s*(av|in|out|rms|mot|k)(,(av|max|N))?(\(max\))?\s*$|JSON|CSV|PDF|PNG|SVG|XLSX|AASX|Ctrl|Alt|Enter|Esc|Strg|Shift|Tab|xx\.xx|AAS|BH-AF1|\bLb\d+\b|L10|L50|\bL\d+\b"
 )
-"""Versions of the catalogue; names of products, files, formats, keys and parameters; indices of symbols."""
+"""Versions of the catalogue; names of products, files, formats, keys and parameters; symbols and their indices."""
 
 FULL_WIDTH = {ord(letter): ord(letter) + 0xFEE0 for letter in "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"}
 
