@@ -191,6 +191,37 @@ def test_enlarged_part_stays_while_typing_until_the_whole_view_is_asked_for(visi
     assert drawn(page)["ranges"] == whole
 
 
+NAMES = """plot => [...plot.querySelectorAll(".annotation")].map(name => {
+  const box = name.getBoundingClientRect();
+  return [name.textContent.replaceAll("\\u200b", ""), box.left, box.top, box.right, box.bottom];
+})"""
+"""Names along the curves of a plot, with the boxes around them."""
+
+
+def test_a_zoomed_plot_is_as_wide_as_its_section_and_names_what_is_in_sight(visitor: Visitor) -> None:
+    page = visitor.open(PHASES + "#bearing")
+    before = section(page).locator(".envelope svg:visible").bounding_box()
+    frame = plot(page).bounding_box()
+    width = section(page).evaluate("part => part.getBoundingClientRect().width")
+    assert frame["width"] >= width - 2 > before["width"] * 1.5
+    expect(section(page).locator(".envelope svg:visible")).to_have_count(0)
+    curves_named = {"single load", "limit now, fw 1.2", "fw 1", "fw 1.5"}
+    assert {name for name, *_ in plot(page).evaluate(NAMES)} == curves_named
+
+    page.mouse.move(frame["x"] + 300, frame["y"] + 60)
+    page.mouse.down()
+    page.mouse.move(frame["x"] + 700, frame["y"] + 400, steps=5)
+    page.mouse.up()
+    expect(plot(page).locator(".annotation", has_text="Pm")).to_be_visible()  # beyond the section: at its edge
+
+    names = plot(page).evaluate(NAMES)
+    assert curves_named & {name for name, *_ in names}
+    frame = plot(page).bounding_box()
+    for _, left, top, right, bottom in names:
+        assert frame["x"] <= left < right <= frame["x"] + frame["width"]
+        assert frame["y"] <= top < bottom <= frame["y"] + frame["height"]
+
+
 @pytest.mark.parametrize(("format", "start"), [("SVG", b"<svg"), ("PNG", b"\x89PNG")])
 def test_plot_is_saved_without_any_service(visitor: Visitor, tmp_path: Path, format: str, start: bytes) -> None:
     page = visitor.open(PHASES + "#bearing")

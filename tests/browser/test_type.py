@@ -66,3 +66,22 @@ def test_a_menu_opens_under_its_caret_and_dims_nothing(visitor: Visitor) -> None
         shade = page.locator(menu).evaluate("each => getComputedStyle(each, '::backdrop').backgroundColor")
         assert shade in ("rgba(0, 0, 0, 0)", "transparent")
         page.keyboard.press("Escape")
+
+
+def test_rows_of_a_menu_say_the_format_at_the_right(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.get_by_role("button", name="Other files").click()
+    rows = page.locator("#other-files button")
+    ends = rows.evaluate_all("all => all.map(row => row.lastElementChild.getBoundingClientRect().right)")
+    assert len(ends) == 4
+    assert max(ends) - min(ends) < 1
+
+
+def test_what_is_chosen_is_readable_in_forced_colours(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.emulate_media(forced_colors="active")
+    chosen = page.get_by_role("group", name="Only these ratios").locator("input:checked + span")
+    expect(chosen).to_have_count(1)
+    ink, ground = chosen.evaluate("chip => [getComputedStyle(chip).color, getComputedStyle(chip).backgroundColor]")
+    system = "rgb(255, 255, 255)"  # HighlightText of Chromium's emulation in light colours
+    assert (ink, ground != system) == (system, True)
