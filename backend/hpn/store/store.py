@@ -307,9 +307,9 @@ class Store(Transactions):
         async with self._reading() as connection:
             return await count_pending(connection, versions, kind)
 
-    async def take_stale(self, versions: Versions, most: int, *, is_new: bool = False) -> list[Stale]:
-        """Documents that this process, which may be new, asks from now on."""
-        return await self._write(lambda connection: take_stale(connection, versions, most, is_new=is_new))
+    async def take_stale(self, versions: Versions, most: int, started: datetime) -> list[Stale]:
+        """Documents that a process that has started at a moment asks from now on."""
+        return await self._write(lambda connection: take_stale(connection, versions, most, started))
 
     async def settle(self, stale: Stale, versions: Versions, values: dict[str, Any] | None) -> None:
         """Keep what a selection gets today; without values it is to be asked again."""

@@ -87,7 +87,7 @@ async def count_pending(connection: AsyncConnection, versions: Versions, kind: D
     return int((await connection.execute(query)).scalar_one())
 
 
-async def _is_their_turn(connection: AsyncConnection, versions: Versions, now: datetime, *, is_new: bool) -> bool:
+async def _is_their_turn(connection: AsyncConnection, versions: Versions, now: datetime, started: datetime) -> bool:
     """True where documents are asked by these versions: those of the process that came last, or whose turn is over.
 
     While two versions run beside each other, neither asks again what the other has just asked.
@@ -96,18 +96,18 @@ async def _is_their_turn(connection: AsyncConnection, versions: Versions, now: d
     last = (await connection.execute(select(c.versions, c.begun).order_by(c.begun.desc()).limit(1))).one_or_none()
     if last is not None and last.versions == versions.key:
         return True
-    if last is None or is_new or last.begun < now - LEASE:
+    if last is None or last.begun < max(started, now - LEASE):
         await connection.execute(delete(askings).where(c.versions == versions.key))
         await insert_new(connection, askings, {"versions": versions.key, "begun": now})
         return True
     return False
 
 
-async def take_stale(connection: AsyncConnection, versions: Versions, most: int, *, is_new: bool) -> list[Stale]:
-    """Documents that this process, which may be new, asks from now on, the newest first; no other takes them before
-    their time is up."""
+async def take_stale(connection: AsyncConnection, versions: Versions, most: int, started: datetime) -> list[Stale]:
+    """Documents that a process that has started at a moment asks from now on, the newest first; no other takes them
+    before their time is up."""
     c, now = documents.c, datetime.now(UTC)
-    if not await _is_their_turn(connection, versions, now, is_new=is_new):
+    if not await _is_their_turn(connection, versions, now, started):
         return []
     free = or_(c.today_taken.is_(None), c.today_taken < now - LEASE)
     newest = select(c.id).where(pending(versions), free).order_by(c.saved.desc()).limit(most)

@@ -8,6 +8,7 @@ import logging
 import time
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from datetime import UTC, datetime
 from typing import Any
 
 import msgspec
@@ -25,8 +26,9 @@ from hpn.web.door.pools import Pool
 MOST_DOCUMENTS, MOST_AXES = 20, 100
 """Documents that are taken at once, and axes that are answered at once: what is in memory, and holds up a batch."""
 
-PATIENCE_SECONDS = 60.0
-"""Time after which somebody looks whether there is anything to ask, unless a list has shown that there is."""
+START_SECONDS, PATIENCE_SECONDS = 5.0, 60.0
+"""Time after the start, and after each look, at which it is looked whether there is anything to ask, unless a list has
+shown that there is."""
 
 logger = logging.getLogger(__name__)
 
@@ -42,7 +44,7 @@ class Todays:
     def __init__(self, state: State) -> None:
         self._state = state
         self._wanted = asyncio.Event()
-        self._is_new = True
+        self._started = datetime.now(UTC)
 
     def wake(self) -> None:
         """Look soon."""
@@ -55,8 +57,14 @@ class Todays:
             self.wake()
 
     async def run(self) -> None:
-        """Ask what is to be asked, and wait for more, until this is cancelled."""
+        """Ask what is to be asked, and wait for more, until this is cancelled; the start of a service comes first."""
+        patience = START_SECONDS
         while True:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(patience):
+                    await self._wanted.wait()
+            self._wanted.clear()
+            patience = PATIENCE_SECONDS
             try:
                 while await self.ask_some():
                     await asyncio.sleep(0)
@@ -64,20 +72,14 @@ class Todays:
                 pass
             except Exception:
                 logger.exception("what saved documents get today can’t be asked")
-            self._wanted.clear()
-            with suppress(TimeoutError):
-                async with asyncio.timeout(PATIENCE_SECONDS):
-                    await self._wanted.wait()
 
     async def ask_some(self) -> int:
         """Number of documents that were taken and asked; 0 where there is nothing left to do."""
         store: Store = self._state.store
         versions = versions_of(self._state)
-        left, is_new = await store.pending(versions, None), self._is_new
-        self._is_new = False
-        if not left:
+        if not await store.pending(versions, None):
             return 0
-        taken = await store.take_stale(versions, MOST_DOCUMENTS, is_new=is_new)
+        taken = await store.take_stale(versions, MOST_DOCUMENTS, self._started)
         selections = [each for each in taken if each.kind == "selection"]
         values = await self._work(_today_of, selections, self._state.catalogue) if selections else []
         for stale, found in zip(selections, values, strict=True):

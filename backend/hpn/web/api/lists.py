@@ -81,14 +81,14 @@ async def part_of(
     """The part of a list that is asked for; Problem 422 for a cursor that isn't one."""
     store: Store = request.app.state.store
     versions: Versions = versions_of(request.app.state)
+    if pending := await store.pending(versions, kind):  # before the lines: of none that is not pending it is unknown
+        request.app.state.todays.wake()
     try:
         lines, following = await read(_wanted(query, kind, versions), query.cursor, query.limit)
     except ValueError as error:
         raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
     since = _moment(query.deleted_since, "deleted_since")
     gone = [] if since is None else [id for id, _ in await store.deleted(since, kind)]
-    if pending := await store.pending(versions, kind):
-        request.app.state.todays.wake()
     return ListPart(lines, following, gone, pending)
 
 
