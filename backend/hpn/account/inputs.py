@@ -40,8 +40,8 @@ OF_SHAFT: Mapping[str, tuple[str, ...]] = {
 
 def lines_of(application: Application, paths: Iterable[str]) -> list[Line]:
     """Inputs at paths of INPUTS that are given or have a default; of the load, also the defaults of a phase's load."""
-    found = ((path, _value(application, path)) for path in paths)
-    return [_line(path, INPUTS[path], value) for path, value in found if value is not None]
+    values = ((path, _value(application, path)) for path in paths)
+    return [_line(path, INPUTS[path], value) for path, value in values if value is not None]
 
 
 def _value(application: Application, path: str) -> Any:
@@ -87,9 +87,9 @@ def moves_of(motion: Motion) -> LineTable:
     columns = []
     for place, named in MOVES.items():
         name = place.rpartition(".")[2]
-        given = [getattr(move, name) if _is_said(move, name) else None for move in motion.moves]
-        if any(value is not None for value in given):
-            columns.append(QuantityColumn(_line(place, named), given))
+        values = [getattr(move, name) if _is_said(move, name) else None for move in motion.moves]
+        if any(value is not None for value in values):
+            columns.append(QuantityColumn(_line(place, named), values))
     names = [move.name for move in motion.moves]
     named_moves = QuantityColumn(_line("motion.move.name", MOTION["move.name"]), names)
     return LineTable({MOVE_HEAD: [*map(row_label, itertools.count(), names)]}, tuple(columns), named_moves)

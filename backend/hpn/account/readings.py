@@ -220,15 +220,15 @@ def torque_limit_of(candidate: Candidate, gear: Gear | None, application: Applic
     peak = (motor and motor.peak_torque_Nm) or math.nan
     need = math.nan if need is None else need
     warnings = on_torque_limit(gear, limit_Nm=limit, need_Nm=need, peak_Nm=peak) if gear else ()
-    said = {notice.code: notice.sentence for notice in warnings}
+    sentences = {notice.code: notice.sentence for notice in warnings}
     values: dict[str, Value] = {
         "limit": Quantity(limit, "Nm", 4, "down"),
         "share": Quantity(100 * limit / peak, "percent", 3, "down"),
         "peak": Quantity(peak, "Nm", 6),
     }
     plain = Sentence(LIMIT if math.isnan(peak) else NO_LIMIT if peak <= limit else WITHIN, values)
-    warns = bool(said)
-    return TorqueLimit((said.pop("gear_below_motor", plain), *said.values()), warns)
+    warns = bool(sentences)
+    return TorqueLimit((sentences.pop("gear_below_motor", plain), *sentences.values()), warns)
 
 
 def stiffness_of(candidate: Candidate) -> Sentence:

@@ -35,17 +35,17 @@ def _by_size(value: dict[str, Any]) -> float | dict[str, float] | None:
     if len(value) > MOST_SIZES:
         counts = {"field_type": "Tuple", "max_length": MOST_SIZES, "actual_length": len(value)}
         raise PydanticKnownError("too_long", counts)
-    given = {name: each for name, each in value.items() if each is not None}
+    distances = {name: each for name, each in value.items() if each is not None}
     names: dict[str, str] = {}
-    for name in given:
+    for name in distances:
         if names.setdefault(canonical_place(name), name) != name:
             error = PydanticCustomError("size_twice", TWICE, {"size": canonical_place(name)})
             details = InitErrorDetails(type=error, loc=(name,), input=None)
             raise ValidationError.from_exception_data("shaft_centre_mm", [details])
-    found = _BySize.validate_python(given)
-    if found.keys() <= {OTHERS}:
-        return found.get(OTHERS)
-    return {size: found[size] for size in sorted(found, key=_place)}
+    by_size = _BySize.validate_python(distances)
+    if by_size.keys() <= {OTHERS}:
+        return by_size.get(OTHERS)
+    return {size: by_size[size] for size in sorted(by_size, key=_place)}
 
 
 def _place(size: str) -> tuple[bool, int, str]:

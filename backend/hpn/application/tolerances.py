@@ -186,7 +186,7 @@ def intervals_of(application: Any, tolerances: Mapping[str, Tolerance]) -> tuple
 
     A path of one phase goes before the one for all.
     """
-    found: dict[Place, Interval] = {}
+    intervals: dict[Place, Interval] = {}
     problems: list[tuple[Place, Any]] = []
     for path in sorted(tolerances, key=lambda one: NUMBERED.fullmatch(one) is not None):
         try:
@@ -199,13 +199,13 @@ def intervals_of(application: Any, tolerances: Mapping[str, Tolerance]) -> tuple
             if (fault := interval.fault) is not None:
                 problems.append(((path,), fault))
                 break
-            found[place] = interval
+            intervals[place] = interval
     if not problems:
-        problems += _contradictions(application, found)
+        problems += _contradictions(application, intervals)
     if problems:
         below = [(("tolerances", *place), problem) for place, problem in problems]
         raise refused(application, *below)
-    return tuple(one for one in found.values() if one.low < one.high)
+    return tuple(one for one in intervals.values() if one.low < one.high)
 
 
 class _NoTargetError(ValueError):

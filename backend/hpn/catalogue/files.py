@@ -45,18 +45,18 @@ def read_folder(folder: Path, tables: Collection[str]) -> dict[str, bytes]:
     the name of none: whoever put it there believes that it counts.
     """
     try:
-        found = sorted(os.listdir(folder))
+        names = sorted(os.listdir(folder))
     except (FileNotFoundError, NotADirectoryError):
         raise CatalogueError(folder, None, None, "is not a folder") from None
     except OSError as error:
         raise CatalogueError(folder, None, None, f"can’t be read: {error.strerror}") from None
-    for name in found:
+    for name in names:
         if name not in tables and _is_meant(name, tables):
             detail = f"is not a table of the catalogue; there are {', '.join(sorted(tables))}"
             if name.lower() in tables:
                 detail = f"is not a table of the catalogue: its name is {name.lower()}, in small letters"
             raise CatalogueError(folder / name, None, None, detail)
-    return {name: _content(folder / name) for name in found if name in tables}
+    return {name: _content(folder / name) for name in names if name in tables}
 
 
 def _is_meant(name: str, tables: Collection[str]) -> bool:
@@ -231,10 +231,10 @@ def _in_wire(text: str, column: str, code: str) -> str | Sentence:
     if not _takes_units(unit):
         return text
     number, own = split_unit(text.strip())
-    found = unit_code(own, unit) if own else code
-    if isinstance(found, Sentence):
-        return found
-    if not found or not NUMBER.fullmatch(number) or (measure := entered(unit, found)).same:
+    measured_in = unit_code(own, unit) if own else code
+    if isinstance(measured_in, Sentence):
+        return measured_in
+    if not measured_in or not NUMBER.fullmatch(number) or (measure := entered(unit, measured_in)).same:
         return number if own else text
     return f"{Decimal(repr(measure.wire(number))):f}"
 

@@ -112,16 +112,16 @@ class AxisAnswer(Reply, frozen=True):
 def answers(axes: Sequence[AxisQuestion], catalogue: Catalogue) -> list[AxisAnswer]:
     """Answers to axes, all of them judged together; an axis whose application has a fault is open."""
     # Copies, so that axes with one application have a code each.
-    applications = [each and each.model_copy() for each in (asked.resolved.application for asked in axes)]
-    codes = {id(each): asked.ordering_code for each, asked in zip(applications, axes, strict=True)}
+    applications = [each and each.model_copy() for each in (question.resolved.application for question in axes)]
+    codes = {id(each): question.ordering_code for each, question in zip(applications, axes, strict=True)}
 
     def answered(judged: Judged) -> AxisAnswer | InputError:
         return _answered(judged, codes[id(judged.application)])
 
     sound = [application for application in applications if application is not None]
     judged = iter(judge_batch(sound, catalogue, answered))
-    found = (None if application is None else next(judged) for application in applications)
-    return [_whole(asked.resolved, answer, catalogue) for asked, answer in zip(axes, found, strict=True)]
+    outcomes = (None if application is None else next(judged) for application in applications)
+    return [_whole(question.resolved, answer, catalogue) for question, answer in zip(axes, outcomes, strict=True)]
 
 
 def _whole(resolved: Resolved, answer: AxisAnswer | InputError | None, catalogue: Catalogue) -> AxisAnswer:

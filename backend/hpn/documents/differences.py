@@ -115,24 +115,24 @@ def differences(
     """Differences of two documents; gears are counted and weighed where the catalogue of each one's answers is kept."""
     before, after = ({axis.number: axis for axis in side.axes} for side in (one, other))
     pairs = [(number, old, new) for number, (old, new) in aligned(before, after)]
-    found = [axis for number, old, new in pairs if (axis := _axis(number, old, new))]
+    different = [axis for number, old, new in pairs if (axis := _axis(number, old, new))]
     both = [number for number in before if number in after]
     return DocumentDifferences(
         side_from=summary_of(one, catalogues[0]),
         side_to=summary_of(other, catalogues[1]),
         common=tuple(_common(one, other)),
         order=both != [number for number in after if number in before],
-        axes=tuple(sorted(found, key=_weight)),
-        same=len(pairs) - len(found),
+        axes=tuple(sorted(different, key=_weight)),
+        same=len(pairs) - len(different),
     )
 
 
 def today(document: Frozen, catalogue: Catalogue) -> Frozen:
     """A document answered again by this engine and a catalogue; its inputs stay as they were resolved."""
-    asked = [AxisQuestion(resolve(_json(axis.resolved), {}), axis.ordering_code) for axis in document.axes]
+    questions = [AxisQuestion(resolve(_json(axis.resolved), {}), axis.ordering_code) for axis in document.axes]
     axes = [
         structs.replace(axis, answer=structs.replace(answer, not_asked=axis.answer.not_asked))
-        for axis, answer in zip(document.axes, answers(asked, catalogue), strict=True)
+        for axis, answer in zip(document.axes, answers(questions, catalogue), strict=True)
     ]
     return structs.replace(document, axes=tuple(axes))
 
@@ -220,8 +220,8 @@ def _common(old: Frozen, new: Frozen) -> Iterator[DifferentInput]:
 
 
 def _json(raw: Raw) -> Mapping[str, Any]:
-    found = msgspec.json.decode(raw)
-    return found if isinstance(found, Mapping) else {}
+    value = msgspec.json.decode(raw)
+    return value if isinstance(value, Mapping) else {}
 
 
 Place = tuple[str | int, ...]

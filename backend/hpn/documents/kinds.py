@@ -72,12 +72,12 @@ def kinds_of(sought: Sequence[Sought], catalogue: Catalogue, *, most: int | None
         np.array([axis.quantity for axis in sought], np.int64),
         np.array([place.get(axis.designation or "", NO_GEAR) for axis in sought], np.intp),
     )
-    found = fewest_kinds(axes, most=most)
+    kinds = fewest_kinds(axes, most=most)
     numbers = [axis.number for axis in sought]
     return MachineKinds(
-        tuple(_step(step, axes, names, numbers) for step in found.steps),
-        found.least,
-        tuple(Forced(names[gear], tuple(numbers[axis] for axis in only)) for gear, only in found.forced.items()),
+        tuple(_step(step, axes, names, numbers) for step in kinds.steps),
+        kinds.least,
+        tuple(Forced(names[gear], tuple(numbers[axis] for axis in only)) for gear, only in kinds.forced.items()),
     )
 
 

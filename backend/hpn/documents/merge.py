@@ -67,8 +67,8 @@ def resolve(own: Mapping[str, Any], common: Mapping[str, Any], without: Collecti
 
 def _lacking(error: ValidationError, inherited: Collection[str]) -> list[str]:
     """Paths of inherited values that are refused for lack of something."""
-    found = error.errors(include_url=False, include_input=False, include_context=False)
-    paths = (".".join(map(str, entry["loc"])) for entry in found if entry["type"] in LACKS)
+    entries = error.errors(include_url=False, include_input=False, include_context=False)
+    paths = (".".join(map(str, entry["loc"])) for entry in entries if entry["type"] in LACKS)
     return list(dict.fromkeys(path for path in paths if path in inherited))
 
 

@@ -24,10 +24,10 @@ SIZES_NAMED, SHOWN = 20, 40
 
 def gears_for(application: Application, catalogue: Catalogue) -> GearList:
     """Gears that an application allows; raises InputError as `select` does."""
-    asked, load = application.requirements, application.output_load
+    requirements, load = application.requirements, application.output_load
     if load is not None:
         _require_sizes_of_centres(load, catalogue)
-    return gears_allowed(asked.sizes, asked.ratios, load.model if load else "", catalogue)
+    return gears_allowed(requirements.sizes, requirements.ratios, load.model if load else "", catalogue)
 
 
 def gears_allowed(

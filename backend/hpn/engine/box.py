@@ -68,11 +68,11 @@ class Box:
     @cached_property
     def columns(self) -> Mapping[str, PhaseIntervals]:
         """Intervals of phases by field; in each phase its own before that of the whole cycle."""
-        found: dict[str, list[tuple[int, int]]] = {}
+        pairs_by_field: dict[str, list[tuple[int, int]]] = {}
         for place, one in enumerate(self.intervals):
             for phase in self._phases_of(one):
-                found.setdefault(str(one.place[-1]), []).append((place, phase))
-        return {name: PhaseIntervals(*np.array(pairs, np.intp).T) for name, pairs in found.items()}
+                pairs_by_field.setdefault(str(one.place[-1]), []).append((place, phase))
+        return {name: PhaseIntervals(*np.array(pairs, np.intp).T) for name, pairs in pairs_by_field.items()}
 
     def _phases_of(self, one: Interval) -> Sequence[int]:
         """Phases whose field an interval moves; none for another number."""
@@ -124,28 +124,28 @@ class Box:
         reaches, factor = (self.low[of] <= 0) & (self.high[of] >= 0), np.abs(x / value)
         series["torque_Nm"][:, 0, phases], series["torque_sign"][:, 0, phases] = np.abs(x), np.sign(x)
         for name in WITH_TORQUE[1:]:
-            given, own = self._given[name][phases], series[name][:, 0, phases]
+            is_given, own = self._given[name][phases], series[name][:, 0, phases]
             grown = np.zeros(1) if name == "least_torque_Nm" else own + np.abs(x - value)
             moved = np.where(reaches, grown, own * factor)
-            series[name][:, 0, phases] = np.where(given, moved, np.abs(x))
+            series[name][:, 0, phases] = np.where(is_given, moved, np.abs(x))
 
     def _move_speeds(self, series: Mapping[str, FloatArray], points: FloatArray, column: PhaseIntervals) -> None:
         """Set speeds, and peaks that go with them by one factor."""
         of, phases = column
         x = points[:, of]
         peak = series["peak_speed_rpm"][:, 0, phases] * np.abs(x / self.value[of])
-        given = self._given["peak_speed_rpm"][phases]
+        is_given = self._given["peak_speed_rpm"][phases]
         series["speed_rpm"][:, 0, phases] = np.abs(x)
-        series["peak_speed_rpm"][:, 0, phases] = np.where(given, peak, np.abs(x))
+        series["peak_speed_rpm"][:, 0, phases] = np.where(is_given, peak, np.abs(x))
 
     def _asked_at(self, points: FloatArray) -> InputArrays:
-        asked, count = self.duty.asked, len(points)
-        numbers = dict(zip(asked.numbers, np.repeat(self._table, count, axis=1), strict=True))
+        inputs, count = self.duty.asked, len(points)
+        numbers = dict(zip(inputs.numbers, np.repeat(self._table, count, axis=1), strict=True))
         numbers |= {path: points[:, place, None] for path, place in self.numbers.items()}
         u, allowed = (numbers[f"requirements.{name}"] for name in ("utilisation", "worst_case_utilisation"))
         numbers["requirements.utilisation"] = np.where(np.isnan(allowed), u, allowed)
-        by_size = {size: np.repeat(values, count, axis=0) for size, values in asked.shaft_centres_mm.items()}
-        texts = {name: np.repeat(getattr(asked, name), count, axis=0) for name in TEXTS}
+        by_size = {size: np.repeat(values, count, axis=0) for size, values in inputs.shaft_centres_mm.items()}
+        texts = {name: np.repeat(getattr(inputs, name), count, axis=0) for name in TEXTS}
         return InputArrays(numbers, **texts, shaft_centres_mm=by_size)
 
     @cached_property
@@ -173,26 +173,26 @@ class Box:
     @cached_property
     def ends(self) -> Mapping[str, Ends]:
         """Inputs that the intervals move, by their names in `Check.over`, at both ends."""
-        found: dict[str, Ends] = {}
+        ends_by_name: dict[str, Ends] = {}
         series = self.at(np.stack((self.low, self.high))).typed if self.columns else None
         for name, column in self.columns.items():
             for moved in self._moved_by(name):
                 own = self.columns[moved].phases if moved != name and moved in self.columns else ()
                 keep = ~np.isin(column.phases, own)
                 values = getattr(series, moved)[:, 0, column.phases[keep]]
-                seen = found.get(moved)
+                seen = ends_by_name.get(moved)
                 ends = Ends(column.of[keep], values[0], values[1])
-                found[moved] = ends if seen is None else _both(seen, ends)
-        if self.duty.has_shaft_drive and "peak_torque_Nm" in found:
-            found["shaft_torque_Nm"] = found["peak_torque_Nm"]
-        if "torque_sign" in found:
-            of, low, high = found.pop("torque_sign")
+                ends_by_name[moved] = ends if seen is None else _both(seen, ends)
+        if self.duty.has_shaft_drive and "peak_torque_Nm" in ends_by_name:
+            ends_by_name["shaft_torque_Nm"] = ends_by_name["peak_torque_Nm"]
+        if "torque_sign" in ends_by_name:
+            of, low, high = ends_by_name.pop("torque_sign")
             if (turning := low != high).any():
-                found["torque_sign"] = Ends(of[turning], low[turning], high[turning])
+                ends_by_name["torque_sign"] = Ends(of[turning], low[turning], high[turning])
         for path, place in self.numbers.items():
             low, high = np.abs(self.low[[place]]), np.abs(self.high[[place]])
-            found[path] = Ends(np.array([place]), low, high)
-        return found
+            ends_by_name[path] = Ends(np.array([place]), low, high)
+        return ends_by_name
 
     @staticmethod
     def _moved_by(name: str) -> tuple[str, ...]:
@@ -259,10 +259,10 @@ def moved(application: Application, values: Mapping[Place, float]) -> Applicatio
             part = part.setdefault(step, {}) if isinstance(part, dict) else part[step]
         part[place[-1]] = value
     document.pop("tolerances", None)
-    asked = document.get("requirements")
-    if asked:
-        asked.pop("over_tolerance", None)
-        allowed = asked.pop("worst_case_utilisation", None)
+    requirements = document.get("requirements")
+    if requirements:
+        requirements.pop("over_tolerance", None)
+        allowed = requirements.pop("worst_case_utilisation", None)
         if allowed is not None:
-            asked["utilisation"] = allowed
+            requirements["utilisation"] = allowed
     return type(application).model_validate(document)

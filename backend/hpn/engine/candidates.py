@@ -149,9 +149,9 @@ class Candidate(Reply, frozen=True):
 
         The candidate's status does not say: a gear that fails a check is unsuitable, rated or not.
         """
-        asked, rated = (self.check(code) for code in _UNLIMITED_BY.get(figure, ("", "")))
+        unlimited_by, rated = (self.check(code) for code in _UNLIMITED_BY.get(figure, ("", "")))
         known = rated is not None and rated.status != "not_rated"
-        return self.says(figure) and getattr(self, figure) is None and asked is not None and known
+        return self.says(figure) and getattr(self, figure) is None and unlimited_by is not None and known
 
 
 _UNLIMITED_BY = {

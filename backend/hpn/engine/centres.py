@@ -67,12 +67,12 @@ def _carries(figures: Figures, centre_mm: FloatArray) -> FloatArray:
 
 def _loads(duty: Duty, gears: GearList, centre_mm: FloatArray) -> FloatArray:
     """f_w P of every phase on every size with the shaft's centre at a distance, shape (1, sizes, phases)."""
-    asked, phases = duty.asked, duty.phases
-    y = asked["output_load.axial_radius_mm"]
+    inputs, phases = duty.asked, duty.phases
+    y = inputs["output_load.axial_radius_mm"]
     radial = bearing.radial_load_at_centre(
         radial_N=phases.radial_N,
         axial_N=phases.axial_N,
-        radial_position_mm=asked["output_load.radial_position_mm"][..., None],
+        radial_position_mm=inputs["output_load.radial_position_mm"][..., None],
         axial_radius_mm=np.where(np.isnan(y), 0.0, y)[..., None],
         shaft_centre_mm=centre_mm[..., None],
     )

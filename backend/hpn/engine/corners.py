@@ -43,10 +43,10 @@ class Need:
 
 def needs_of(boxes: Sequence[Box], checks: Sequence[Check], gears: GearList, catalogue: Catalogue) -> list[list[Need]]:
     """Points of the checks in each box."""
-    found = [[need_of(box, check) for check in checks] for box in boxes]
-    sharing = [(box, need) for box, needs in zip(boxes, found, strict=True) for need in needs if need.weights]
+    needs_by_box = [[need_of(box, check) for check in checks] for box in boxes]
+    sharing = [(box, need) for box, needs in zip(boxes, needs_by_box, strict=True) for need in needs if need.weights]
     if not sharing:
-        return found
+        return needs_by_box
     ends = [_with_weights(box, need) for box, need in sharing]  # weights at their low ends, at their high ends
     duty = duty_of([(box, points) for (box, _), points in zip(sharing, ends, strict=True)])
     case = Case(duty, gears.columns, Figures(duty, gears, catalogue))
@@ -55,7 +55,7 @@ def needs_of(boxes: Sequence[Box], checks: Sequence[Check], gears: GearList, cat
         for place, raised in zip(places, _raised(check, case, 2 * np.array(places)), strict=True):
             box, need = sharing[place]
             need.points = _points(box, need, ends[place], raised)
-    return found
+    return needs_by_box
 
 
 def need_of(box: Box, check: Check) -> Need:
@@ -134,10 +134,10 @@ def _raised(check: Check, case: Case, rows: IntArray) -> list[BoolArray]:
 def _points(box: Box, need: Need, ends: FloatArray, raised: BoolArray) -> FloatArray:
     """Points with the weights of some phases at their high ends, those of the others at their low ends."""
     columns = [box.columns[name] for name in need.weights if name in box.columns]
-    found = {}
+    points = {}
     for of_group in raised if len(raised) else np.zeros((1, raised.shape[-1]), np.bool_):
         point = ends[0].copy()
         for of, phases in columns:
             point[of] = np.where(of_group[phases], ends[1, of], ends[0, of])
-        found[point.tobytes()] = point
-    return np.array(list(found.values()))
+        points[point.tobytes()] = point
+    return np.array(list(points.values()))

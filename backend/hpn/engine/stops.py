@@ -62,15 +62,15 @@ class Stops:
     @cached_property
     def course(self) -> stop.Stop:
         """Time, angle and energy that no stop exceeds."""
-        asked = self.duty.asked
+        inputs = self.duty.asked
         return stop.course_of_stop(
             brake=self.brake,
             load=self.load,
             gear=self.play,
             stop_torque_Nm=self.torque_Nm,
             speed_rad_per_s=self.duty.stop_speed_rpm * np.pi / 30,
-            reaction_time_s=asked["emergency_stop.brake.reaction_time_s"],
-            rise_time_s=asked["emergency_stop.brake.rise_time_s"],
+            reaction_time_s=inputs["emergency_stop.brake.reaction_time_s"],
+            rise_time_s=inputs["emergency_stop.brake.rise_time_s"],
         )
 
     @cached_property

@@ -43,20 +43,20 @@ class Found:
 
 def with_worst(applications: Sequence[Application], evaluation: Evaluation) -> Evaluation:
     """The evaluation of applications with their worst cases; by these, where an application asks for it."""
-    given = np.array([bool(one.tolerances) for one in applications])
-    if not given.any():
+    has_tolerances = np.array([bool(one.tolerances) for one in applications])
+    if not has_tolerances.any():
         return evaluation
     used, exact = evaluation.used.copy(), np.ones(evaluation.used.shape, np.bool_)
-    some = np.flatnonzero(given)
+    some = np.flatnonzero(has_tolerances)
     for start in range(0, len(some), AT_ONCE):
         part = some[start : start + AT_ONCE].tolist()
         members = [members_of(applications[index], evaluation.catalogue) for index in part]
-        for index, found in zip(part, worst_cases(members, *_setting(evaluation)), strict=True):
-            used[:, index], exact[:, index] = found.used, found.exact
+        for index, worst_case in zip(part, worst_cases(members, *_setting(evaluation)), strict=True):
+            used[:, index], exact[:, index] = worst_case.used, worst_case.exact
     bound = worst_bound(evaluation)
-    bound[:, ~given] = evaluation.bound[:, ~given]
-    worst = Worst(judged_by(evaluation, used, bound), exact, given, evaluation.used)
-    over = given & np.array([one.requirements.over_tolerance for one in applications])
+    bound[:, ~has_tolerances] = evaluation.bound[:, ~has_tolerances]
+    worst = Worst(judged_by(evaluation, used, bound), exact, has_tolerances, evaluation.used)
+    over = has_tolerances & np.array([one.requirements.over_tolerance for one in applications])
     if over.any():
         chosen = np.where(over[:, None], used, evaluation.used), np.where(over[:, None], bound, evaluation.bound)
         evaluation = judged_by(evaluation, *chosen)
@@ -65,8 +65,8 @@ def with_worst(applications: Sequence[Application], evaluation: Evaluation) -> E
 
 def worst_bound(evaluation: Evaluation) -> FloatArray:
     """Largest utilisations that the worst cases may have, shape (C, N, 1)."""
-    asked = evaluation.case.asked
-    u, allowed = (asked[f"requirements.{name}"] for name in ("utilisation", "worst_case_utilisation"))
+    inputs = evaluation.case.asked
+    u, allowed = (inputs[f"requirements.{name}"] for name in ("utilisation", "worst_case_utilisation"))
     bound, loads = evaluation.bound.copy(), np.array([check.group == "load" for check in evaluation.checks])
     bound[loads] = np.where(np.isnan(allowed), u, allowed) * (1 + ROUNDING)
     return bound

@@ -28,15 +28,15 @@ def needed_of(candidate: Candidate, application: Application, catalogue: Catalog
     """
     if application.requirements.over_tolerance and application.tolerances:
         return ()  # they are of the values as given
-    asked, gears = application.requirements, catalogue.listed([catalogue.by_designation[candidate.designation]])
-    found = []
-    for proposed in alternatives_of(candidate, asked.utilisation):
-        one = replace(proposed, requirements=tuple(_as_asked(limit, asked) for limit in proposed.requirements))
+    requirements, gears = application.requirements, catalogue.listed([catalogue.by_designation[candidate.designation]])
+    remedies = []
+    for proposed in alternatives_of(candidate, requirements.utilisation):
+        one = replace(proposed, requirements=tuple(_as_asked(limit, requirements) for limit in proposed.requirements))
         while less := next((less for less in parts_less(one) if _fits(application, less, gears, catalogue)), None):
             one = less
         if not _is_bounded(application, candidate) or _fits(application, one, gears, catalogue):
-            found.append(one)
-    return in_order(found)
+            remedies.append(one)
+    return in_order(remedies)
 
 
 def _is_bounded(application: Application, candidate: Candidate) -> bool:

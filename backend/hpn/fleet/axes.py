@@ -131,20 +131,20 @@ class Axes:
         for name in (name for name in COLUMNS.phases if not _is_number(name) and self._is_given(name)):
             texts = pc.list_flatten(self._table[name]).combine_chunks().dictionary_encode()
             sound = np.array([is_title(text, LONGEST_NAME) for text in texts.dictionary.to_pylist()], np.bool_)
-            found = np.ones(self.counts.sum(), np.bool_)
-            given = np.repeat(np.asarray(pc.is_valid(self._table[name])), self.counts)
+            is_sound = np.ones(self.counts.sum(), np.bool_)
+            is_given = np.repeat(np.asarray(pc.is_valid(self._table[name])), self.counts)
             places = np.asarray(pc.fill_null(texts.indices, -1))
-            found[given] = np.append(sound, True)[places]  # the last one is that of no name
-            mask &= ~self._any_phase(~found)
+            is_sound[is_given] = np.append(sound, True)[places]  # the last one is that of no name
+            mask &= ~self._any_phase(~is_sound)
         return mask
 
     def _judge(self) -> None:
         """Keep the axes whose pattern the models take; each has the gears and the defaults of its pattern."""
         first, pattern = self._patterns()
         judged = [self._judged(cells) for _, cells in cells_of(self._table, first.tolist())]
-        sound = np.array([found is not None for found in judged], np.bool_)
-        self._gears = [found[1] for found in judged if found]
-        applications = [found[0] for found in judged if found]
+        sound = np.array([each is not None for each in judged], np.bool_)
+        self._gears = [each[1] for each in judged if each]
+        applications = [each[0] for each in judged if each]
         self._asked = InputArrays.of(applications) if applications else None
         self._keep(sound[pattern])
         self._pattern = (np.cumsum(sound) - 1)[pattern[sound[pattern]]]

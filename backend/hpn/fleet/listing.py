@@ -102,18 +102,18 @@ def _asked(order: Order, names: pa.ChunkedArray) -> pa.Table:
 def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
     """The gear that `select` puts first for each of some sound axes that none suits, with what governs it."""
     read = Axes(axes, catalogue)
-    found = dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
+    columns = dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
     for gears, members in read.chunks():
         evaluation = evaluate(read.duty(members), gears, catalogue)
         best = _foremost(evaluation)
         used = np.take_along_axis(evaluation.utilisation, best, -1)[:, 0]
         governing = evaluation.governing_of(best[:, 0])
         for index, row in enumerate(read.places[members].tolist()):
-            found["nearest"][row] = evaluation.gears.rows[best[index, 0]].designation
+            columns["nearest"][row] = evaluation.gears.rows[best[index, 0]].designation
             if not np.isnan(used[index]):
-                found["nearest_check"][row] = evaluation.checks[governing[index]].code
-                found["nearest_utilisation"][row] = used.item(index) if np.isfinite(used[index]) else None
-    return pa.table(found, NEAREST)
+                columns["nearest_check"][row] = evaluation.checks[governing[index]].code
+                columns["nearest_utilisation"][row] = used.item(index) if np.isfinite(used[index]) else None
+    return pa.table(columns, NEAREST)
 
 
 def _foremost(evaluation: Evaluation) -> PlaceArray:

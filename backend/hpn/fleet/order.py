@@ -98,8 +98,8 @@ def require_writable(path: Path) -> None:
         raise FleetError(f"{path}: there is no folder {path.parent}")
     if not os.access(path.parent, os.W_OK | os.X_OK, effective_ids=True):
         raise FleetError(f"{path}: this user may not write into {path.parent}")
-    found = status_of(path)
-    if found is not None and stat.S_ISDIR(found.st_mode):
+    status = status_of(path)
+    if status is not None and stat.S_ISDIR(status.st_mode):
         raise FleetError(f"{path}: is a folder, where a file belongs")
 
 

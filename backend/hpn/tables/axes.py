@@ -250,15 +250,15 @@ class _AxesInterpreter(Interpreter):
         ]
         if not named or self.ask_stop(named) == "phase":
             return groups
-        found = []
+        kept_groups = []
         for group in groups:
             rows = list(zip(group.cells, group.rows, group.numbers, strict=True))
             torques = [torque for _, row, number in rows if number in named and (torque := self.torque_of(row))]
             if torques:
                 self.stops[group.name] = max(torques, key=lambda torque: abs(float(torque)))
             if kept := [row for row in rows if row[2] not in named]:
-                found.append(_Group(group.name, *zip(*kept, strict=True)))
-        return found
+                kept_groups.append(_Group(group.name, *zip(*kept, strict=True)))
+        return kept_groups
 
     # --- Values of an axis --------------------------------------------------------------------------------------------
 
@@ -271,16 +271,16 @@ class _AxesInterpreter(Interpreter):
             if column.held is None or column.role == AXIS:
                 continue
             cells = [row[column.place] for row in group.cells]
-            found = numbers.get(column.place, (None,) * len(cells))
+            values_read = numbers.get(column.place, (None,) * len(cells))
             if column.role == NAME.role:
                 values[NAME.place] = [None if is_blank(cell) else str(cell) for cell in cells]
             elif column.role in PHASE_ROLES:
-                listed = [self._number(*each, column) for each in zip(cells, found, strict=True)]
+                listed = [self._number(*each, column) for each in zip(cells, values_read, strict=True)]
                 if loads == "axis" and column.role in _OF_AXIS and _stands_first(cells):
                     values[_OF_AXIS[column.role][1]] = listed[0]
                 elif column.role in REQUIRED or any(value is not None for value in listed):
                     values[column.held.place] = listed
-            elif (value := self._one(dict(zip(cells, found, strict=True)), column)) is not None:
+            elif (value := self._one(dict(zip(cells, values_read, strict=True)), column)) is not None:
                 values[column.held.place] = value
         return self._lasting(values, group, times)
 
@@ -298,7 +298,7 @@ class _AxesInterpreter(Interpreter):
         if column.held is None or column.held.kind != "by_size":
             return None
         marks: Sequence[Decimal] = DECIMALS if not cell.lstrip().startswith("{") else (".",)
-        readings = [found for mark in marks if (found := numbers_by_size(cell, partial(self._read, column, mark)))]
+        readings = [reading for mark in marks if (reading := numbers_by_size(cell, partial(self._read, column, mark)))]
         return readings[0] if readings and readings[0] == readings[-1] else None  # no mark is guessed
 
     def _read(self, column: Column, decimal: Decimal, number: str) -> float | None:
@@ -336,8 +336,8 @@ class _AxesInterpreter(Interpreter):
         if not kept or len(kept) == len(durations):
             return axis, group.numbers
         self.standing += [number for number, duration in zip(group.numbers, durations, strict=False) if duration == 0]
-        found = {name: [value[k] for k in kept] if name in _OF_PHASE else value for name, value in axis.items()}
-        return found, tuple(group.numbers[k] for k in kept) + group.numbers[len(durations) :]
+        moving = {name: [value[k] for k in kept] if name in _OF_PHASE else value for name, value in axis.items()}
+        return moving, tuple(group.numbers[k] for k in kept) + group.numbers[len(durations) :]
 
 
 _OF_PHASE = frozenset(each.place for each in (*PHASE, NAME))
@@ -357,5 +357,7 @@ def _listed(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:
     parts = [text for part in _BETWEEN.split(_OF_RATIO.sub("", cell).strip("[]")) if (text := part.strip(","))]
     if texts:
         return [text.strip() for part in parts for text in part.split(",") if text.strip()]
-    found = [entry(part, decimal) for part in parts]
-    return [part if read is None or read.unit else float(read.number) for part, read in zip(parts, found, strict=True)]
+    numbers = [entry(part, decimal) for part in parts]
+    return [
+        part if read is None or read.unit else float(read.number) for part, read in zip(parts, numbers, strict=True)
+    ]

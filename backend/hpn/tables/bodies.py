@@ -115,25 +115,25 @@ def body_of(grid: Grid, scales: str = "") -> TableBody:
             stop = next((cell for cell in filled if is_stop(cell)), "")
             stops |= {number: stop} if stop else {}
             (totals if is_total(text) and not stop else rows).append(Labelled(number, row, text))
-    found = rows or totals
-    if not found:
+    labelled = rows or totals
+    if not labelled:
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
     left_out = tuple(totals), tuple(titles)
     body = TableBody((), (), head.headings, tuple(notes), grid, *left_out, settled.dated, settled.scaled, stops)
-    return body.including(found)
+    return body.including(labelled)
 
 
 def _rows_apart(grid: Grid, head: Head) -> set[int]:
     """Numbers of rows below the header that are none of the table: comments, the header once more, lines of text."""
-    found = set()
+    apart = set()
     for k in range(head.end, len(grid.rows)):
         row = grid.rows[k]
         filled = [place for place, cell in enumerate(row) if not is_blank(cell)]
         again = len(filled) > 1 and all(row[place] in head.headings[place] for place in filled)
         alone = grid.separator == "comma" and filled == [0] and grid.counts[k : k + 1] == (1,) and not is_number(row[0])
         if is_comment(row) or again or alone:
-            found.add(grid.numbers[k])
-    return found
+            apart.add(grid.numbers[k])
+    return apart
 
 
 def _no_numbers(grid: Grid) -> RefusedError:

@@ -37,11 +37,11 @@ class BySize(str):
 
     def shown(self, numbers: Iterable[str], reader: Reader) -> str:
         """The text for a field of a reader, with numbers as the reader writes them."""
-        found = list(zip(self.parts, numbers, strict=True))
-        if len(found) == 1 and not self.parts[0].size:
-            return found[0][1]
+        pairs = list(zip(self.parts, numbers, strict=True))
+        if len(pairs) == 1 and not self.parts[0].size:
+            return pairs[0][1]
         others = reader.text(FOR_OTHERS)
-        return "; ".join(f"{others if part.place == OTHERS else part.size}: {number}" for part, number in found)
+        return "; ".join(f"{others if part.place == OTHERS else part.size}: {number}" for part, number in pairs)
 
 
 def by_size(text: str) -> BySize:

@@ -16,15 +16,15 @@ from hpn.words.titles import LONGEST_NAME, is_title
 
 def columns_of(body: TableBody, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
     """Columns with the answers about them and with their units; raises RefusedError for less than three of numbers."""
-    found = proposed(body, CYCLE)
-    if sum(not column.text for column in found) < len(REQUIRED):
-        raise _too_few(body, found)
+    columns = proposed(body, CYCLE)
+    if sum(not column.text for column in columns) < len(REQUIRED):
+        raise _too_few(body, columns)
     if not body.headed:
-        roles = _by_place(body, found)
-        found = [replace(column, role=roles.get(column.place, column.role)) for column in found]
-    if named := _column_of_names(found, body):
-        found = [replace(c, role=NAME.role, skipped=None) if c is named else c for c in found]
-    return settled(found, body, CYCLE, choices, assumed)
+        roles = _by_place(body, columns)
+        columns = [replace(column, role=roles.get(column.place, column.role)) for column in columns]
+    if named := _column_of_names(columns, body):
+        columns = [replace(c, role=NAME.role, skipped=None) if c is named else c for c in columns]
+    return settled(columns, body, CYCLE, choices, assumed)
 
 
 def _column_of_names(columns: Sequence[Column], body: TableBody) -> Column | None:
@@ -32,7 +32,7 @@ def _column_of_names(columns: Sequence[Column], body: TableBody) -> Column | Non
     with a heading that says so, else the first of texts, remarks last; most rows have one that may be a name, and not
     all the same.
     """
-    found = []
+    candidates = []
     for column in columns:
         if column.heading == NAME.place:
             return column
@@ -41,8 +41,8 @@ def _column_of_names(columns: Sequence[Column], body: TableBody) -> Column | Non
         tells_apart = 2 * len(filled) >= len(cells) and len(set(filled)) >= min(len(cells), 2)
         is_time = any(map(moment_of, filled))
         if column.text and tells_apart and not is_time and all(is_title(cell, LONGEST_NAME) for cell in cells):
-            found.append(column)
-    return min(found, key=lambda column: (is_remark(column.heading), not is_name(column.heading)), default=None)
+            candidates.append(column)
+    return min(candidates, key=lambda column: (is_remark(column.heading), not is_name(column.heading)), default=None)
 
 
 def _too_few(body: TableBody, columns: Sequence[Column]) -> RefusedError:
@@ -62,8 +62,8 @@ def _by_place(body: TableBody, columns: Sequence[Column]) -> dict[int, str]:
     """
     numeric = [column.place for column in columns if not column.text]
     inside = {place: units_in(body, place) for place in numeric}
-    if any(found != {""} for found in inside.values()):
-        return {place: by_units(found) for place, found in inside.items()}
+    if any(units != {""} for units in inside.values()):
+        return {place: by_units(units) for place, units in inside.items()}
     labelled = any(column.text for column in columns) and len(REQUIRED) <= len(body.rows) <= len(PHASE_ROLES)
     if len(numeric) != len(REQUIRED) or labelled or counts(body, numeric[0]):
         return {}

@@ -69,26 +69,26 @@ def read_grids(
     grids: Sequence[Grid], choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)
 ) -> Table:
     """Reading of the cells of a table, out of those by each separator; raises nothing."""
-    found = [_read_grid(grid, choices, assumed) for grid in grids]
-    divided = next((table for table, _ in found if table.problem and table.problem.template == DIVIDED), None)
+    readings = [_read_grid(grid, choices, assumed) for grid in grids]
+    divided = next((table for table, _ in readings if table.problem and table.problem.template == DIVIDED), None)
     if divided:
         return divided
-    readable = [each for each in found if each.table.problem is None]
+    readable = [each for each in readings if each.table.problem is None]
     distinct = list({each.difference: each.table for each in reversed(readable)}.values())[::-1]
     if not distinct:
-        return found[0].table
+        return readings[0].table
     if len(distinct) == 1:
         return distinct[0]
     names = {table.separator: SEPARATORS[table.separator] for table in distinct}
-    asked = Questions(choices)
+    questions = Questions(choices)
     question = Sentence(N_("Which character separates the columns?"))
-    chosen = asked.choose(replace(SEPARATOR, options=names), question)
+    chosen = questions.choose(replace(SEPARATOR, options=names), question)
     for table in distinct:
         if table.separator == chosen:
-            return replace(table, choices=(*asked.choices, *table.choices))
+            return replace(table, choices=(*questions.choices, *table.choices))
     return replace(
         distinct[0],
-        choices=(*asked.choices, *distinct[0].choices),
+        choices=(*questions.choices, *distinct[0].choices),
         separator="",
         questions=(question,),
         phases=(),
@@ -97,23 +97,23 @@ def read_grids(
 
 
 def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _Found:
-    asked = Questions(choices)
+    questions = Questions(choices)
     try:
         body = body_of(grid, choices.scales)
         if has_two_ways(body):
-            way = asked.choose(PHASE, Sentence(N_("Is a phase a row or a column?")))
+            way = questions.choose(PHASE, Sentence(N_("Is a phase a row or a column?")))
             body = body_of(grid.transposed(), choices.scales) if way == "column" else body
             if not way:
-                said = _CycleInterpreter(body, columns_of(body, choices, assumed), asked).said
+                said = _CycleInterpreter(body, columns_of(body, choices, assumed), questions).said
                 return _Found(Table(**said, separator=grid.separator), body.rows)
-        body = _one_cycle(body, asked)
+        body = _one_cycle(body, questions)
         if len(body.rows) > MAXIMUM_PHASES:
             raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
         columns = columns_of(body, choices, assumed)
         if body.totals:
-            body = _without_totals(body, columns, asked)
+            body = _without_totals(body, columns, questions)
             columns = columns_of(body, choices, assumed)
-        return _Found(_CycleInterpreter(body, columns, asked).table(), body.rows)
+        return _Found(_CycleInterpreter(body, columns, questions).table(), body.rows)
     except RefusedError as refused:
         return _Found(Table(problem=refused.sentence, separator=grid.separator))
 
@@ -243,15 +243,15 @@ class _CycleInterpreter(Interpreter):
         if not found.unit:
             return code
         codes = spellings.codes_for(found.unit, column.quantity)
-        said = f"{found.number[:30]} {found.unit[:30]}"
+        cell = f"{found.number[:30]} {found.unit[:30]}"
         headed = column.unit != CELLS and bool(heading_over(self.body.headings[column.place]).units)
         if len(codes) > 1 and not headed:
             template = N_("{cell} in column {name} can be {first} or {second}; write one of them")
-            raise RefusedError(template, cell=said, name=column.called, **either(codes, found.unit))
+            raise RefusedError(template, cell=cell, name=column.called, **either(codes, found.unit))
         if not code or (headed and code != column.unit):
             template = N_("{cell}: this unit does not fit column {name}; possible: {units}")
             taken = units.symbol_of_code(column.unit) if headed and column.unit else known_units(column.quantity)
-            raise RefusedError(template, cell=said, name=column.called, units=taken)
+            raise RefusedError(template, cell=cell, name=column.called, units=taken)
         return code
 
     def _phase_rows(self, times: str) -> list[Row]:
@@ -334,12 +334,12 @@ def _totals_of(body: TableBody, used: Sequence[Column], mark: Decimal) -> list[L
     """Rows that are totals of the others in the columns that are used, their numbers read with a decimal mark."""
     named = {total.number for total in body.totals}
     phases = [row for number, row in zip(body.numbers, body.rows, strict=True) if number not in named]
-    found = []
+    totals = []
     for total in body.totals if phases and len(body.totals) <= MOST_TOTALS else ():
         others = [other.cells for other in body.totals if other is not total]
         if any(_sums_up(total, rows, used, mark) for rows in (phases, [*phases, *others])):
-            found.append(total)
-    return found
+            totals.append(total)
+    return totals
 
 
 def _sums_up(total: Labelled, rows: Sequence[Sequence[str]], used: Sequence[Column], mark: Decimal) -> bool:

@@ -91,8 +91,8 @@ def _of_gzip(content: bytes, wanted: TableBounds) -> Contents:
         unpacked = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(content, 4 * wanted.most_characters + 4)
     except zlib.error:
         raise RefusedError(NO_TEXT) from None
-    found = _of_text(tidied(text_of(unpacked)), wanted)
-    return replace(found, suffix=".csv.gz") if found.suffix else found
+    contents = _of_text(tidied(text_of(unpacked)), wanted)
+    return replace(contents, suffix=".csv.gz") if contents.suffix else contents
 
 
 def _of_text(text: str, wanted: TableBounds) -> Contents:
@@ -137,16 +137,16 @@ def _of_rows(suffix: str, grid: Grid | None) -> Contents:
 
 
 def _sheets(content: bytes) -> dict[str, tuple[Grid, ...] | Sentence]:
-    found = dict[str, tuple[Grid, ...] | Sentence]()
+    contents = dict[str, tuple[Grid, ...] | Sentence]()
     left = MOST_CELLS_IN_ALL
     for name, sheet in sheets_of(content).items():
         try:
             grid = sheet.grid()
             left -= len(grid.rows) * grid.width
-            found[name] = (grid,) if left >= 0 else too_many_cells().sentence
+            contents[name] = (grid,) if left >= 0 else too_many_cells().sentence
         except RefusedError as refused:
-            found[name] = refused.sentence
-    return found
+            contents[name] = refused.sentence
+    return contents
 
 
 def _is_taken_csv(text: str, takes: Takes) -> bool:

@@ -232,14 +232,14 @@ def parts_of(text: str) -> tuple[str, str]:
 
 def _bracketed(text: str) -> list[tuple[str, str]]:
     """Parts of a text outside and inside of its outer brackets, each with the bracket that it stands in."""
-    found, begin, depth, bracket = list[tuple[str, str]](), 0, 0, ""
+    parts, begin, depth, bracket = list[tuple[str, str]](), 0, 0, ""
     for k, sign in enumerate(text):
         opens, closes = sign in "[(<{", sign in "])>}" and depth > 0
         if (opens and not depth) or (closes and depth == 1):
-            found.append((bracket, text[begin:k].strip()))
+            parts.append((bracket, text[begin:k].strip()))
             begin, bracket = k + 1, sign if opens else ""
         depth += opens - closes
-    return [*found, (bracket, text[begin:].strip())]
+    return [*parts, (bracket, text[begin:].strip())]
 
 
 def _joined(parts: Sequence[tuple[str, str]], without: int | None = None) -> str:
@@ -319,25 +319,25 @@ class Over:
 
 def heading_over(texts: Sequence[str]) -> Over:
     """Meaning of the texts above a column together: `Torque` over `max` is the largest torque, over `Nm` one in Nm."""
-    said = [heading_of(text) for text in texts]
-    measured = frozenset(each.unit for each in said) - {""}
-    names = [text for text, each in zip(texts, said, strict=True) if each.kind != UNIT]
+    meanings = [heading_of(text) for text in texts]
+    measured = frozenset(each.unit for each in meanings) - {""}
+    names = [text for text, each in zip(texts, meanings, strict=True) if each.kind != UNIT]
     if len(names) < 2:
-        kind, meant = next(((each.kind, each.meant) for each in said if each.kind != UNIT), ("", ""))
-        found, name = said, names[0] if names else ""
+        kind, meant = next(((each.kind, each.meant) for each in meanings if each.kind != UNIT), ("", ""))
+        headings, name = meanings, names[0] if names else ""
     else:
-        found, name = _together(names)
-        kind, meant = found[0].kind, found[0].meant
-        measured |= {each.unit for each in found} - {""}
+        headings, name = _together(names)
+        kind, meant = headings[0].kind, headings[0].meant
+        measured |= {each.unit for each in headings} - {""}
     return Over(
         kind,
         name,
         measured,
         meant,
         bool(meant) or any(is_of_motor(parts_of(" ".join(text.split()))[0]) for text in names),
-        lasting=any(each.lasting for each in found),
-        angular=any(each.angular for each in found),
-        instant=any(each.instant for each in found),
+        lasting=any(each.lasting for each in headings),
+        angular=any(each.angular for each in headings),
+        instant=any(each.instant for each in headings),
     )
 
 

@@ -134,15 +134,15 @@ def _notes(grid: Grid, places: Sequence[int]) -> tuple[Sentence, ...]:
 
 def _named(row: Sequence[str]) -> int:
     """Number of quantities that a row names, by name or by unit."""
-    found = set()
+    quantities = set()
     for cell in row[:MOST_COLUMNS]:
         heading = heading_of(cell)
         if heading.names_quantity:
-            found.add(heading.kind or heading.meant)
+            quantities.add(heading.kind or heading.meant)
         elif heading.kind == UNIT:
             measured = quantities_of(heading.unit)
-            found |= {role for role in REQUIRED if QUANTITIES[role] in measured}
-    return len(found)
+            quantities |= {role for role in REQUIRED if QUANTITIES[role] in measured}
+    return len(quantities)
 
 
 def numbers_in(row: Sequence[str]) -> int:
@@ -208,7 +208,7 @@ def _headings(head: Sequence[Sequence[str]], width: int) -> tuple[tuple[str, ...
     A spreadsheet writes such a name into the first of its columns alone. A time is one of no shaft: it ends the name's
     reach.
     """
-    found = [list[str]() for _ in range(width)]
+    headings = [list[str]() for _ in range(width)]
     for row, below in zip(head, [*head[1:], ()], strict=False):
         over, has_names, end = "", False, 0
         for k, cell in enumerate(row):
@@ -218,5 +218,5 @@ def _headings(head: Sequence[Sequence[str]], width: int) -> tuple[tuple[str, ...
             elif k == end or not under or heading_of(under).kind == "t":
                 over = ""
             if text := cell or (over if has_names or is_qualifier(under) else ""):
-                found[k].append(text)
-    return tuple(map(tuple, found))
+                headings[k].append(text)
+    return tuple(map(tuple, headings))

@@ -135,19 +135,20 @@ class Interpreter:
         hidden = len(rows) - FIRST_ROWS - LAST_ROWS
         if hidden > 1:
             rows = rows[:FIRST_ROWS] + rows[-LAST_ROWS:]
-        found = [ShownRow(number, tuple(self._shown(row[c.place], c) for c in self.columns)) for number, row in rows]
+        preview = [ShownRow(number, tuple(self._shown(row[c.place], c) for c in self.columns)) for number, row in rows]
         if hidden > 1:
-            found[FIRST_ROWS] = found[FIRST_ROWS]._replace(hidden=hidden)
+            preview[FIRST_ROWS] = preview[FIRST_ROWS]._replace(hidden=hidden)
         for note in skipped_among((*self.body.grid.notes, *self.notes)):
-            found.append(ShownRow(int(str(note.values["row"])), skipped=str(note.values["text"])))
-        return tuple(sorted(found, key=lambda row: row.number))
+            preview.append(ShownRow(int(str(note.values["row"])), skipped=str(note.values["text"])))
+        return tuple(sorted(preview, key=lambda row: row.number))
 
     def _shown(self, cell: str, column: Column) -> PreviewCell:
         text = str(cell[:LONGEST_CELL])
         if not column.is_number or is_blank(cell):
             return PreviewCell(text, kind="text" if column.held else "unread")
-        found = {entry(cell, mark, any_unit=True) for mark in ((self.decimal,) if self.decimal else DECIMALS)} - {None}
-        read = found.pop() if len(found) == 1 else None
+        marks = (self.decimal,) if self.decimal else DECIMALS
+        numbers = {entry(cell, mark, any_unit=True) for mark in marks} - {None}
+        read = numbers.pop() if len(numbers) == 1 else None
         if read is None:
             return PreviewCell(text, kind="asked")
         if column.held and (wire := in_wire(read, column)):

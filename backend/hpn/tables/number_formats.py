@@ -52,8 +52,8 @@ class Section:
 
     def holds(self, value: float) -> bool:
         """True where its condition is met, or it has none."""
-        found = _CONDITION.fullmatch(self.condition)
-        return found is None or bool(_HOLDS[found[1]](value, float(found[2])))
+        condition = _CONDITION.fullmatch(self.condition)
+        return condition is None or bool(_HOLDS[condition[1]](value, float(condition[2])))
 
 
 def section_of(number_format: str, value: float) -> Section | None:

@@ -27,14 +27,14 @@ def with_outcomes(table: Table, grids: Sequence[Grid], choices: Choices, assumed
     if not 0 < table.rows <= MOST_ROWS_TRIED:
         return table
     options = [(choice, code) for choice in table.choices for code in choice.options][:MOST_OPTIONS_TRIED]
-    found: dict[str, dict[str, Interpretation]] = {}
+    outcomes: dict[str, dict[str, Interpretation]] = {}
     for choice, code in options:
         answer: dict[str, Any] = {"totals": choices.totals or "sum", choice.name: code}
         if outcome := _outcome(read_grids(grids, replace(choices, **answer), assumed)):
-            found.setdefault(choice.name, {})[code] = outcome
+            outcomes.setdefault(choice.name, {})[code] = outcome
 
     def told(choice: Choice) -> Choice:
-        return replace(choice, outcomes=found.get(choice.name, {}))
+        return replace(choice, outcomes=outcomes.get(choice.name, {}))
 
     return replace(table, choices=tuple(map(told, table.choices)))
 

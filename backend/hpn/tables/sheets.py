@@ -160,8 +160,8 @@ def _separators(text: str) -> list[str]:
             return [name]
     if _barred(lines):
         return ["bar"]
-    found = [name for name, mark in (("comma", ","), ("blanks", "  "), ("blank", " ")) if mark in text.strip()]
-    return found or ["tab"]
+    separators = [name for name, mark in (("comma", ","), ("blanks", "  "), ("blank", " ")) if mark in text.strip()]
+    return separators or ["tab"]
 
 
 def _begins(name: str, lines: Sequence[str]) -> set[int]:

@@ -202,14 +202,14 @@ def _with_merged(rows: dict[int, list[str]], spans: Iterable["Span"]) -> dict[in
 
 def _stretches(places: Iterable[int], named: Callable[[int], str]) -> str:
     """Names of rows or columns, those that follow one another as one: `3–5, 9`."""
-    found: list[list[int]] = []
+    stretches: list[list[int]] = []
     for place in places:
-        if found and place == found[-1][1] + 1:
-            found[-1][1] = place
+        if stretches and place == stretches[-1][1] + 1:
+            stretches[-1][1] = place
         else:
-            found.append([place, place])
-    texts = [named(a) if a == b else f"{named(a)}–{named(b)}" for a, b in found[:MOST_NAMED]]
-    return ", ".join([*texts, *(["…"] if len(found) > MOST_NAMED else [])])
+            stretches.append([place, place])
+    texts = [named(a) if a == b else f"{named(a)}–{named(b)}" for a, b in stretches[:MOST_NAMED]]
+    return ", ".join([*texts, *(["…"] if len(stretches) > MOST_NAMED else [])])
 
 
 def _text(cell: Any) -> str:

@@ -63,9 +63,9 @@ def drafted(
     axes: list[tuple[SavedAxis, dict[str, Any]]], common: Mapping[str, Any], catalogue: Catalogue
 ) -> list[AxisDraft]:
     """Axes with other own values, all answered together."""
-    asked = [AxisQuestion(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
-    found = answers(asked, catalogue)
-    return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, found, strict=True)]
+    questions = [AxisQuestion(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
+    replies = answers(questions, catalogue)
+    return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, replies, strict=True)]
 
 
 async def replace_axis(
@@ -177,13 +177,13 @@ def plan_patches(
 
 def plan_common(machine: Machine, common: Json, catalogue: Catalogue, by: str | None) -> Plan:
     """Other common values."""
-    found = answered(machine, common, catalogue)
+    replies = answered(machine, common, catalogue)
     values = {"common": msgspec.json.encode(common).decode()}
     axes = {
-        axis.number: replace(axis, answer=answer) for axis, (_, _, answer) in zip(machine.items, found, strict=True)
+        axis.number: replace(axis, answer=answer) for axis, (_, _, answer) in zip(machine.items, replies, strict=True)
     }
     undo = Undo(common=(common, common_of(machine)))
-    change = Change(machine.version, by, values, answered=found)
+    change = Change(machine.version, by, values, answered=replies)
     return Plan(change, undo, effect_of(machine, axes, catalogue), _gears(axes))
 
 
@@ -237,8 +237,8 @@ def plan_undo(
     if undo.added:
         return plan_removal(machine, [there[number] for number in undo.added if number in there], by)
     common = common_of(machine)
-    found = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone], catalogue)
-    back = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, found, strict=True)]
+    replies = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone], catalogue)
+    back = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, replies, strict=True)]
     return Change(machine.version, by, restored=back), Undo(added=tuple(number for number, _ in back))
 
 

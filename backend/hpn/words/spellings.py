@@ -35,14 +35,14 @@ def _spelling(text: str) -> str:
 
 
 def _spellings() -> dict[str, tuple[str, ...]]:
-    found: dict[str, dict[str, None]] = {}
+    codes_by_spelling: dict[str, dict[str, None]] = {}
     for quantity, units in UNITS.items():
         for code, unit in units.items():
             for word in unit.spelled.split():
                 for spelling in _FORMS.get(quantity, _plain)(word):
-                    found.setdefault(spelling, {})[code] = None
-    found |= {word: {"Nm": None} for word in ("Newtonmeter", "Newton·meter", "newton·metres")}
-    return {spelling: tuple(codes) for spelling, codes in found.items()}
+                    codes_by_spelling.setdefault(spelling, {})[code] = None
+    codes_by_spelling |= {word: {"Nm": None} for word in ("Newtonmeter", "Newton·meter", "newton·metres")}
+    return {spelling: tuple(codes) for spelling, codes in codes_by_spelling.items()}
 
 
 def _plain(word: str) -> list[str]:

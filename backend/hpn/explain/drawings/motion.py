@@ -76,9 +76,9 @@ def motion_words(motion: Motion, pause_s: float, duty: Duty) -> list[Sentence]:
     }
     own = N_("The distance is the load’s; speed and torque are those at the gear’s output.")
     turning = N_("All at the gear’s output; the angle is measured from the start.")
-    said = [
+    sentences = [
         Sentence(N_("Motion of {time}; at most {speed}; torque from {low} to {high}."), values),
         Sentence(own if isinstance(motion, LinearMotion) else turning),
     ]
     pause = Sentence("Pause {pause}.", {"pause": Quantity(pause_s, "s", 6)})
-    return [*said, pause] if pause_s else said
+    return [*sentences, pause] if pause_s else sentences

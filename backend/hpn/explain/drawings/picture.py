@@ -289,12 +289,12 @@ def different_loads(
 
     Of each phase `radial_N` is the radial load at the shaft's centre, and `published` its f_w P.
     """
-    found: dict[tuple[float, float], PhaseLoad] = {}
+    loads: dict[tuple[float, float], PhaseLoad] = {}
     series = (radial_N, duty.phases.axial_N[0, 0].tolist(), published, duty.phases.radial_N[0, 0].tolist())
     for place, (radial, axial, used, given) in enumerate(zip(*series, strict=True)):
         load = PhaseLoad([], radial, axial, used, allowed, given, names[place])
-        found.setdefault((given, axial), load).places.append(place)
-    return list(found.values())
+        loads.setdefault((given, axial), load).places.append(place)
+    return list(loads.values())
 
 
 def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:

@@ -235,8 +235,8 @@ def _table(export: MachineExport, reader: Reader) -> dict[str, Any]:
 
 
 def _changed(export: MachineExport) -> frozenset[int]:
-    found = export.since.axes if export.since else ()
-    return frozenset(axis.number for axis in found if axis.change != "removed")
+    axes = export.since.axes if export.since else ()
+    return frozenset(axis.number for axis in axes if axis.change != "removed")
 
 
 def _row(axis: FrozenAxis, reader: Reader) -> dict[str, Any]:

@@ -53,8 +53,8 @@ def gear_phrase(axis: FrozenAxis, reader: Reader) -> str:
 
 def faults_of(axis: FrozenAxis, reader: Reader) -> list[str]:
     """Faults of an open axis, each with its place."""
-    found = axis.answer.faults[:MOST_FAULTS]
-    return [f"{reader.told(label_of(fault.pointer))}: {reader.text(fault.detail)}" for fault in found]
+    faults = axis.answer.faults[:MOST_FAULTS]
+    return [f"{reader.told(label_of(fault.pointer))}: {reader.text(fault.detail)}" for fault in faults]
 
 
 def ranges(numbers: Iterable[int]) -> str:

@@ -76,9 +76,9 @@ def _head(column: QuantityColumn, reader: Reader) -> list[Any]:
 
 def _summary(table: LineTable, reader: Reader) -> list[tuple[str, list[str]]]:
     """Least and largest value of each column, and the sum of the durations."""
-    found: list[tuple[str, list[str]]] = []
-    given = [(c.head, [value for value in c.values if isinstance(value, float | int)]) for c in table.columns]
+    rows: list[tuple[str, list[str]]] = []
+    numbers = [(c.head, [value for value in c.values if isinstance(value, float | int)]) for c in table.columns]
     for title, of in ((N_("least"), min), (N_("largest"), max)):
-        found.append((reader.text(title), [reader.figure(of(values), head.unit) for head, values in given]))
-    sums = [reader.figure(sum(values)) if head.code == "phase.duration_s" else "" for head, values in given]
-    return [*found, (reader.text(N_("sum")), sums)]
+        rows.append((reader.text(title), [reader.figure(of(values), head.unit) for head, values in numbers]))
+    sums = [reader.figure(sum(values)) if head.code == "phase.duration_s" else "" for head, values in numbers]
+    return [*rows, (reader.text(N_("sum")), sums)]

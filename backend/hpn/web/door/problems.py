@@ -117,10 +117,10 @@ def mistake() -> Problem:
 def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
     """Methods that there are for the path of a request."""
     tried = [(method, {**scope, "method": method}) for method in ("GET", "POST", "PATCH", "DELETE")]
-    found = [
+    methods = [
         method for method, scope in tried if any(route.matches(scope)[0] is Match.FULL for route in app.router.routes)
     ]
-    return found + ["HEAD"] * ("GET" in found)
+    return methods + ["HEAD"] * ("GET" in methods)
 
 
 def install(app: FastAPI, page_of: Callable[[Request, HTTPException], Response | None]) -> None:

@@ -60,11 +60,11 @@ def conflict_of(view: AxisView, catalogue: Catalogue) -> Conflict:
 
 def _cells(pairs: Pairs) -> dict[Cell, str]:
     counts: dict[str, int] = {}
-    found: dict[Cell, str] = {}
+    texts: dict[Cell, str] = {}
     for name, text in pairs:
-        found[name, counts.get(name, 0)] = text
+        texts[name, counts.get(name, 0)] = text
         counts[name] = counts.get(name, 0) + 1
-    return found
+    return texts
 
 
 def _lines(opened: Pairs, theirs: Pairs, yours: Pairs) -> tuple[InputConflict, ...]:
@@ -120,7 +120,7 @@ def _joined(opened: Pairs, theirs: Pairs, yours: Pairs) -> Pairs:
 
 
 def _grouped(pairs: Pairs) -> Mapping[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    texts: dict[str, list[str]] = {}
     for name, text in pairs:
-        found.setdefault(name, []).append(text)
-    return found
+        texts.setdefault(name, []).append(text)
+    return texts

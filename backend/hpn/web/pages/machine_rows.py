@@ -31,15 +31,15 @@ class Opened(NamedTuple):
 
 def opened(view: MachineView, rows: Iterable[MachineRow]) -> dict[int, Opened]:
     """The same of some axes, by their numbers."""
-    found: dict[int, Opened] = {}
+    by_number: dict[int, Opened] = {}
     worked_out = 0
     for row in rows:
         application, remedies = resolved(row.axis, view.common).application, tuple[Sentence, ...]()
         if application and row.status == "unsuitable" and worked_out < MOST_REMEDIES:
             worked_out, remedies = worked_out + 1, _remedies(row, application, view.catalogue)
         reasons = _reasons(row) if row.status == "open" else ()
-        found[row.axis.number] = Opened(link_of(row, application) if application else "", reasons, remedies)
-    return found
+        by_number[row.axis.number] = Opened(link_of(row, application) if application else "", reasons, remedies)
+    return by_number
 
 
 def _reasons(row: MachineRow) -> tuple[Reason, ...]:
