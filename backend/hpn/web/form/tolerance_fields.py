@@ -124,7 +124,7 @@ def field_of(name: str, text: str, numbers: Iterator[str], units: Mapping[str, s
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
+class ToleranceField:
     """A tolerance with its field: name, and the row for one of a row; `row` counts the rows that are filled."""
 
     name: str
@@ -165,13 +165,13 @@ def _in_row(table: FormTable, k: int, name: str, sides: Sides) -> bool:
     return True
 
 
-def fields(table: FormTable, scalars: Mapping[str, str]) -> Iterator[Placed]:
+def fields(table: FormTable, scalars: Mapping[str, str]) -> Iterator[ToleranceField]:
     """Tolerances of all fields, those of rows by the rows that become phases or moves."""
     for name, text in scalars.items():
         if name in OF_COLUMN:
-            yield Placed(name, None, OF_COLUMN[name], None, sides_of(text))
+            yield ToleranceField(name, None, OF_COLUMN[name], None, sides_of(text))
     rows = [k for k, row in enumerate(table.rows) if any(text.strip() for text in row.values())]
     for row, k in enumerate(rows):
         for name, symbol in OF_ROW.items():
             if (text := table.rows[k].get(name, "")).strip():
-                yield Placed(name, k, symbol, row, sides_of(text))
+                yield ToleranceField(name, k, symbol, row, sides_of(text))

@@ -32,7 +32,7 @@ MOST_ROWS = 50
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class SavedSide:
     """One of the two as saved, and the gear that its page shows first."""
 
     saved: SavedSelection
@@ -67,15 +67,15 @@ async def compare_selections(request: Request) -> Response:
     return await _rendered(request, 200, {"missing": [], "found": found})
 
 
-def _side(saved: SavedSelection, catalogue: Catalogue | None) -> Side:
+def _side(saved: SavedSelection, catalogue: Catalogue | None) -> SavedSide:
     try:
         application: Application | None = Application.model_validate_json(saved.application)
     except ValidationError:
         application = None
-    return Side(saved, result_of(saved, answer_of(saved), application, catalogue))
+    return SavedSide(saved, result_of(saved, answer_of(saved), application, catalogue))
 
 
-def _compared(a: Side, b: Side) -> dict[str, Any]:
+def _compared(a: SavedSide, b: SavedSide) -> dict[str, Any]:
     one, other = a.result.account, b.result.account
     return {
         "sides": (a, b),
