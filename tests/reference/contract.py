@@ -247,9 +247,6 @@ def _judge(
     ):
         if motor.get(key) is not None:
             at_most(code, demand, motor[key])
-    if motor.get("inertia_ratio") is not None:
-        reflected = wishes["load_inertia_kgm2"] / gear.ratio**2
-        at_most("inertia_ratio", reflected / motor["inertia_kgm2"], motor["inertia_ratio"])
     load_checks = len(checks)
 
     temperature = wishes.get("ambient_temperature_degC")
@@ -278,6 +275,9 @@ def _judge(
         at_most("weight", gear.weight, wishes["weight_kg"], 1)
     if wishes.get("length_mm") is not None:
         at_most("length", gear.length, wishes["length_mm"], 1)
+    if motor.get("inertia_ratio") is not None:
+        reflected = wishes["load_inertia_kgm2"] / gear.ratio**2
+        at_most("inertia_ratio", reflected / motor["inertia_kgm2"], motor["inertia_ratio"], 1)
 
     result = Candidate(
         gear,

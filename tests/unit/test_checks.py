@@ -53,6 +53,7 @@ AT: dict[str, Callable[[float], Json]] = {
 PROPERTIES = {"ambient_temperature", "backlash", "torsional_stiffness", "weight", "length"} | {
     "natural_frequency",
     "position_error",
+    "inertia_ratio",
 }
 
 

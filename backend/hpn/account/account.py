@@ -26,7 +26,7 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.candidates import FIGURES, Candidate, CheckResult
 from hpn.engine.checks import BY_CODE, allowed
-from hpn.engine.checks.motor import MOTOR
+from hpn.engine.checks.motor import OF_MOTOR
 from hpn.engine.duty import Duty
 from hpn.engine.selection import CheckDefinition, Selection
 from hpn.physics import equations
@@ -199,7 +199,7 @@ class Account:
     @property
     def motor_checks(self) -> list[CheckLine]:
         """Checks of the motor, that which governs the gear first."""
-        of_motor = {check.code for check in MOTOR}
+        of_motor = {check.code for check in OF_MOTOR}
         return sorted((line for line in self.checks if line.code in of_motor), key=lambda line: not line.governs)
 
     def check(self, code: str) -> CheckLine | None:

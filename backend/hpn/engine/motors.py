@@ -9,15 +9,18 @@ from hpn.application import LISTED_FIGURES, Application, Motor
 from hpn.catalogue import Catalogue, ListedMotor
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, CheckResult
-from hpn.engine.checks.motor import MOTOR
+from hpn.engine.checks import allowed
+from hpn.engine.checks.motor import MOTOR, OF_MOTOR
 from hpn.engine.duty import Duty
 from hpn.engine.figures import Figures
 from hpn.engine.motor_torques import efficiencies, inertia_ratio, torques_along
 from hpn.engine.selection import Selection
 from hpn.physics.equations import ROUNDING, FloatArray
 
-MOTOR_CHECKS = tuple(check.code for check in MOTOR)
+MOTOR_CHECKS = tuple(check.code for check in OF_MOTOR)
 """Codes of the checks of the motor."""
+
+_LOADS = frozenset(check.code for check in MOTOR)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +37,10 @@ class MotorUse:
 
     @property
     def governing(self) -> str:
-        """Code of the check that is nearest to its limit."""
-        return max(self.used, key=self.used.__getitem__)
+        """Code of the check that is nearest to its limit; the inertia ratio counts as one only where it fails."""
+        counting = {code: share for code, share in self.used.items() if code in _LOADS or share > 1 + ROUNDING}
+        counting = counting or self.used
+        return max(counting, key=counting.__getitem__)
 
 
 def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> list[MotorUse]:
@@ -49,13 +54,13 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
         return []
     own = {name: np.array([_known(getattr(motor, name)) for motor in motors]) for name in LISTED_FIGURES}
     used, inertia_ratio = _utilisations(application, gear, catalogue, own)
-    u = application.requirements.utilisation * (1 + ROUNDING)
+    u = application.requirements.utilisation
     uses = []
     for place, motor in enumerate(motors):
         shares = {code: values.item(place) for code, values in used.items() if not np.isnan(values[place])}
         ratio = inertia_ratio.item(place)
         if shares and not (asks_inertia_ratio(application) and motor.inertia_kgm2 is None):
-            fits = all(share <= u for share in shares.values())
+            fits = all(share <= allowed(code, u) * (1 + ROUNDING) for code, share in shares.items())
             uses.append(MotorUse(motor, shares, None if np.isnan(ratio) else ratio, fits))
     return sorted(uses, key=_order)
 
@@ -71,7 +76,7 @@ def _known(value: float | None) -> float:
 
 
 def _order(use: MotorUse) -> tuple[bool, float, float]:
-    worst = max(use.used.values())
+    worst = use.used[use.governing]
     return not use.fits, (use.motor.rated_torque_Nm or np.inf) if use.fits else worst, -worst
 
 

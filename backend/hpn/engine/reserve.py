@@ -119,7 +119,7 @@ def _load_inertia(evaluation: Evaluation, index: int, u: float) -> FloatArray:
     if not np.isnan(f):
         rooms.append(case.gears.torsional_stiffness_Nm_per_rad / np.square(2 * np.pi * f))
     if not np.isnan(n):
-        rooms.append(np.square(case.gears.ratio) * (u * n * J_m - np.nan_to_num(case.gears.inertia_kgm2)))
+        rooms.append(np.square(case.gears.ratio) * (n * J_m - np.nan_to_num(case.gears.inertia_kgm2)))
     if case.duty.brakes is not None and case.duty.brakes.item(index) and not np.isnan(J_m):
         T_k = _emergency_stop_torque(evaluation, index, u)
         rooms.append(case.figures.stops.largest_load_inertia_kgm2(T_k)[index])

@@ -25,7 +25,6 @@ CheckCode = Literal[
     "motor_peak_torque",
     "motor_rated_torque",
     "motor_rated_speed",
-    "inertia_ratio",
     "ambient_temperature",
     "backlash",
     "torsional_stiffness",
@@ -33,6 +32,7 @@ CheckCode = Literal[
     "position_error",
     "weight",
     "length",
+    "inertia_ratio",
 ]
 """Codes of the checks, in the order of the contract."""
 

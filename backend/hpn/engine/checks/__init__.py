@@ -6,11 +6,11 @@ gear (G,); NaN is not published or not asked for, infinity without a limit.
 
 from hpn.engine.check import Check
 from hpn.engine.checks.gear import GEAR
-from hpn.engine.checks.motor import MOTOR
+from hpn.engine.checks.motor import INERTIA_RATIO, MOTOR
 from hpn.engine.checks.output_bearing import OUTPUT_BEARING
 from hpn.engine.checks.properties import PROPERTIES
 
-CHECKS: tuple[Check, ...] = (*GEAR, *OUTPUT_BEARING, *MOTOR, *PROPERTIES)
+CHECKS: tuple[Check, ...] = (*GEAR, *OUTPUT_BEARING, *MOTOR, *PROPERTIES, INERTIA_RATIO)
 """In the order of the contract; a tie for governing goes to the first."""
 
 BY_CODE = {check.code: check for check in CHECKS}

@@ -120,31 +120,35 @@ MOTOR: tuple[Check, ...] = (
         over={**AVERAGE_SPEED, "requirements.motor.rated_speed_rpm": "falling"},
         weighted=lambda c: c.duty.phases.speed_rpm,
     ),
-    Check(
-        code="inertia_ratio",
-        name=N_("inertia ratio"),
-        title=N_("Inertia ratio"),
-        unit="",
-        kind="maximum",
-        group="load",
-        limit_name=N_("your limit"),
-        source=N_("your input"),
-        tests=N_("The load’s inertia reflected to the motor, divided by the motor’s own, stays within your limit."),
-        consequence=N_("The axis is hard to control: it oscillates or responds slowly."),
-        basis=N_(
-            "(J_L / i² + J_g) / J_m. The inertia J_g of the gear at its input is not published in this handbook; it "
-            "is included where a supplement gives it."
-        ),
-        remedy=N_("Choose a larger ratio, a motor with more inertia, or a lighter load."),
-        asked="requirements.motor.inertia_ratio",
-        demand=lambda c: inertia_ratio(c.duty, c.gears, c.asked["requirements.motor.inertia_kgm2"]),
-        relation="(J_L / i² + J_g) / J_m ≤ r_J",
-        accepted=N_("the permitted inertia ratio rises to {value}"),
-        over={
-            "requirements.load_inertia_kgm2": "rising",
-            "requirements.motor.inertia_kgm2": "falling",
-            "requirements.motor.inertia_ratio": "falling",
-            "motion": "ends",
-        },
-    ),
 )
+
+INERTIA_RATIO = Check(
+    code="inertia_ratio",
+    name=N_("inertia ratio"),
+    title=N_("Inertia ratio"),
+    unit="",
+    kind="maximum",
+    group="property",
+    limit_name=N_("your limit"),
+    source=N_("your input"),
+    tests=N_("The load’s inertia reflected to the motor, divided by the motor’s own, stays within your limit."),
+    consequence=N_("The axis is hard to control: it oscillates or responds slowly."),
+    basis=N_(
+        "(J_L / i² + J_g) / J_m. The inertia J_g of the gear at its input is not published in this handbook; it "
+        "is included where a supplement gives it."
+    ),
+    remedy=N_("Choose a larger ratio, a motor with more inertia, or a lighter load."),
+    asked="requirements.motor.inertia_ratio",
+    demand=lambda c: inertia_ratio(c.duty, c.gears, c.asked["requirements.motor.inertia_kgm2"]),
+    relation="(J_L / i² + J_g) / J_m ≤ r_J",
+    accepted=N_("the permitted inertia ratio rises to {value}"),
+    over={
+        "requirements.load_inertia_kgm2": "rising",
+        "requirements.motor.inertia_kgm2": "falling",
+        "requirements.motor.inertia_ratio": "falling",
+        "motion": "ends",
+    },
+)
+
+OF_MOTOR = (*MOTOR, INERTIA_RATIO)
+"""All checks of the motor: of its loads, and of its inertia, which is a property and the last of all checks."""
