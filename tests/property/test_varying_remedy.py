@@ -161,9 +161,9 @@ def test_a_calculation_of_a_motion_gives_the_figures_of_the_reply(motion: Json, 
             bound = NINE_DIGITS * max(abs(printed), 1e-6) + digits_lost(line.formula)
             assert abs(found - printed) <= bound, (code, found, printed)
     assert {"motor_peak_torque", "motor_rated_torque"} <= {code for code, _ in lines}
-    shown = {c.code for c in candidate.checks if BY_CODE[c.code].group == "load" or c.code == "inertia_ratio"}
+    written = {c.code for c in candidate.checks if BY_CODE[c.code].group == "load" or c.code == "inertia_ratio"}
     judged = {c.code for c in candidate.checks if c.limit is not None}
-    assert {comparison.code for step in steps for comparison in step.comparisons} == shown & judged
+    assert {comparison.code for step in steps for comparison in step.comparisons} == written & judged
 
 
 TURNING: Json = {

@@ -106,6 +106,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
         yield Hostile("GET", path)
     yield from (Hostile("GET", path) for path in ("/healthz", "/readyz", "/metrics", "/static/none", "/oembed"))
     yield Hostile("POST", "/api/v1/motors/HPN-20A-5", LONG_JSON, JSON)
+    yield Hostile("POST", "/api/v1/pairs", LONG_JSON, JSON)
     yield Hostile("GET", "/checks/" + "a" * 60_000)
     yield Hostile("GET", "/problems/" + "a" * 60_000)
     yield Hostile("GET", f"/selections/compare?a={saved}&b={saved}")

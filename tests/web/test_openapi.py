@@ -218,6 +218,9 @@ def test_other_replies_are_valid_by_their_schemas_to_the_last_field(api: TestCli
     validator(document, "SavedReply").validate(api.post("/api/v1/selections", json={"application": FULL}).json())
     validator(document, "MotorsReply").validate(api.get("/api/v1/motors").json())
     validator(document, "MotorsOnGearReply").validate(api.post("/api/v1/motors/HPN-20A-5", json=FULL).json())
+    motor = {"designation": "M 40", "rated_torque_Nm": 2.4, "inertia_kgm2": 0.00015}
+    pairs = api.post("/api/v1/pairs", json={"application": cycle(phase(20, 100)), "motors": [motor], "top": 1000})
+    validator(document, "Pairs").validate(pairs.json())
     validator(document, "Health").validate(api.get("/healthz").json())
     validator(document, "Readiness").validate(api.get("/readyz").json())
     for problem in (

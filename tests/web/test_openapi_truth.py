@@ -61,6 +61,7 @@ OPERATIONS = {
     "makeReport": "POST /api/v1/report.pdf",
     "makeSubmodel": "POST /api/v1/submodel.aasx",
     "makeWorkbook": "POST /api/v1/report.xlsx",
+    "pairMotors": "POST /api/v1/pairs",
     "putAxis": "PUT /api/v1/machines/{id}/axes/{number}",
     "removeAxis": "DELETE /api/v1/machines/{id}/axes/{number}",
     "renameSelection": "PATCH /api/v1/selections/{id}",

@@ -13,6 +13,7 @@ from hpn.application.application import (
     RankBy,
 )
 from hpn.application.faults import InputError, Location
+from hpn.application.pairing import MOST_MOTORS, MotorEntry, Pairing
 from hpn.application.requirements import (
     BEARING_LIFE_H,
     LISTED_FIGURES,
@@ -29,6 +30,7 @@ __all__ = [
     "BEARING_LIFE_H",
     "LEAST_MOTION",
     "LISTED_FIGURES",
+    "MOST_MOTORS",
     "MOST_WISHES",
     "STOP_LOADS",
     "WORKED_EXAMPLE",
@@ -44,7 +46,9 @@ __all__ = [
     "LifeBasis",
     "Location",
     "Motor",
+    "MotorEntry",
     "OutputLoad",
+    "Pairing",
     "RankBy",
     "Requirements",
 ]

@@ -251,7 +251,8 @@ class Application(Model):
         if "duty_cycle" not in info.data:
             return asked
         ratio = ("motor", "inertia_ratio")
-        if motor.inertia_ratio is not None and motor.inertia_kgm2 is None and motor.designation is None:
+        of_list = motor.designation is not None or "motors" in (info.context or {})
+        if motor.inertia_ratio is not None and motor.inertia_kgm2 is None and not of_list:
             raise refused(asked, (ratio, PydanticCustomError("inertia_of_motor", "needs the motor’s inertia_kgm2")))
         needing = {ratio: motor.inertia_ratio, ("natural_frequency_Hz",): asked.natural_frequency_Hz}
         places = [place for place, value in needing.items() if value is not None]

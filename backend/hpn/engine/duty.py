@@ -352,6 +352,14 @@ class Duty:
             inertia[place] = course.load_inertia_kgm2
         return inertia
 
+    def with_motors(self, figures: Mapping[str, FloatArray]) -> "Duty":
+        """The duty of one application with many motors: figures of theirs by name, shape (motors, 1), NaN not known.
+
+        Every figure that a motor enters then has a row for each of them; all others have one and broadcast.
+        """
+        numbers = {**self.asked.numbers, **{f"requirements.motor.{name}": column for name, column in figures.items()}}
+        return replace(self, asked=replace(self.asked, numbers=numbers))
+
     @classmethod
     def of(cls, applications: Sequence[Application]) -> "Duty":
         """Duty of applications, in their order."""

@@ -241,7 +241,7 @@ def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
     """Checks that some application asks for, and a mask of those that do, shape (C, N, 1)."""
     always = np.zeros((len(case.duty.average_torque_Nm), 1))
     inputs = [case.asked[check.asked] if check.asked else always for check in CHECKS]
-    given = ~np.isnan(np.concatenate(inputs, axis=1)).T
+    given = ~np.isnan(np.concatenate(np.broadcast_arrays(*inputs), axis=1)).T
     for place, check in enumerate(CHECKS):
         if check.instead:
             given[place] |= ~np.isnan(case.asked[check.instead][:, 0])

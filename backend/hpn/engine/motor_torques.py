@@ -20,7 +20,8 @@ def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple
 
     A stated efficiency has precedence over a supplied curve, which is read at a phase's peak for the peak and at its
     RMS for the RMS. In a motion with a known motor inertia the torque counts at every instant, that inertia included.
-    A gear's own inertia and no-load torque from a supplement count as well.
+    A gear's own inertia and no-load torque from a supplement count as well. With many motors of one application shape
+    (motors, G).
     """
     stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
     eta = np.where(np.isnan(stated), 1.0, stated)
@@ -36,10 +37,15 @@ def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple
             pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
         )
         peak[some, place], rated[some, place] = at_peak.max(axis=1)[some], rms[some]
+    inertia = duty.asked["requirements.motor.inertia_kgm2"][:, 0]
+    many = len(inertia) > len(peak)
+    if many:
+        peak, rated = (np.repeat(torque, len(inertia), axis=0) for torque in (peak, rated))
     for index, course in duty.courses.items():
-        inertia = duty.asked["requirements.motor.inertia_kgm2"].item(index)
-        if not np.isnan(inertia):
-            peak[index], rated[index] = _with_own_inertia(duty, index, course, inertia, gears, catalogue)
+        rows = np.arange(len(inertia)) if many else np.array([index])
+        heavy = rows[~np.isnan(inertia[rows])]
+        if heavy.size:
+            peak[heavy], rated[heavy] = _with_own_inertia(duty, index, course, inertia[heavy], gears, catalogue)
     return peak, rated
 
 
@@ -89,9 +95,9 @@ def _at_motor(
 
 
 def _with_own_inertia(
-    duty: Duty, index: int, course: Course, inertia_kgm2: float, gears: GearList, catalogue: Catalogue
+    duty: Duty, index: int, course: Course, inertia_kgm2: FloatArray, gears: GearList, catalogue: Catalogue
 ) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque at the motor of application `index`, its own inertia included, shape (G,) each.
+    """Peak and RMS torque at motors of application `index`, their own inertia included, shape (motors, G) each.
 
     Gears of one ratio without figures of their own have the same torques, which are computed once.
     """
@@ -105,46 +111,24 @@ def _with_own_inertia(
         np.array([efficiency_at(T, gears.rows[place], catalogue, stated) for place in first.values()])
         for T in (course.peak_torque_Nm, course.rms_torque_Nm)
     )
-    peak, rms = torques_along(
-        course,
-        gears.columns,
-        list(first.values()),
-        efficiency_at_peak=at_peak,
-        efficiency_at_rms=at_rms,
-        inertia_kgm2=inertia_kgm2,
-        pause_s=duty.asked["duty_cycle.pause_s"].item(index),
-    )
-    rows = [list(first).index(kind) for kind in kinds]
-    return peak[rows], rms[rows]
-
-
-def torques_along(
-    course: Course,
-    gears: GearColumns,
-    places: list[int],
-    *,
-    efficiency_at_peak: FloatArray,
-    efficiency_at_rms: FloatArray,
-    inertia_kgm2: float | FloatArray,
-    pause_s: float,
-) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque in Nm of motors with an inertia of their own along a motion, on the gears at some places.
-
-    Of one motor on many gears, or of many motors on one gear; shape (gears,) or (motors,). The gear's own inertia and
-    torque without load count where they are known.
-    """
+    places = np.array(list(first.values()))
+    of_gear, of_motor = np.tile(np.arange(len(places)), len(inertia_kgm2)), np.repeat(inertia_kgm2, len(places))
     own_inertia, without_load = (
-        np.nan_to_num(column[places]) for column in (gears.inertia_kgm2, gears.no_load_torque_Nm)
+        np.nan_to_num(column[places])[of_gear]
+        for column in (gears.columns.inertia_kgm2, gears.columns.no_load_torque_Nm)
     )
-    return motor_torques(
+    peak, rms = motor_torques(
         course,
-        ratio=gears.ratio[places],
-        efficiency_at_peak=efficiency_at_peak,
-        efficiency_at_rms=efficiency_at_rms,
-        motor_inertia_kgm2=inertia_kgm2 + own_inertia,
-        pause_s=pause_s,
+        ratio=gears.columns.ratio[places][of_gear],
+        efficiency_at_peak=at_peak[of_gear],
+        efficiency_at_rms=at_rms[of_gear],
+        motor_inertia_kgm2=of_motor + own_inertia,
+        pause_s=duty.asked["duty_cycle.pause_s"].item(index),
         no_load_torque_Nm=without_load,
     )
+    row = {kind: place for place, kind in enumerate(first)}
+    rows = [row[kind] for kind in kinds]
+    return peak.reshape(-1, len(places))[:, rows], rms.reshape(-1, len(places))[:, rows]
 
 
 def torque_limit(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:

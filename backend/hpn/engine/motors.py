@@ -5,22 +5,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hpn.application import LISTED_FIGURES, Application, Motor
-from hpn.catalogue import Catalogue, ListedMotor
+from hpn.application import LISTED_FIGURES, Application, Motor, MotorEntry
+from hpn.catalogue import Catalogue, GearList, ListedMotor
 from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate, CheckResult
 from hpn.engine.checks import allowed
 from hpn.engine.checks.motor import MOTOR, OF_MOTOR
 from hpn.engine.duty import Duty
-from hpn.engine.figures import Figures
-from hpn.engine.motor_torques import efficiencies, inertia_ratio, torques_along
+from hpn.engine.evaluation import Evaluation, evaluate
+from hpn.engine.motor_torques import inertia_ratio
 from hpn.engine.selection import Selection
-from hpn.physics.equations import ROUNDING, FloatArray
+from hpn.physics.equations import ROUNDING
 
 MOTOR_CHECKS = tuple(check.code for check in OF_MOTOR)
 """Codes of the checks of the motor."""
 
-_LOADS = frozenset(check.code for check in MOTOR)
+LOADS = frozenset(check.code for check in MOTOR)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +38,8 @@ class MotorUse:
     @property
     def governing(self) -> str:
         """Code of the check that is nearest to its limit; the inertia ratio counts as one only where it fails."""
-        counting = {code: share for code, share in self.used.items() if code in _LOADS or share > 1 + ROUNDING}
-        counting = counting or self.used
-        return max(counting, key=counting.__getitem__)
+        counting = {code: share for code, share in self.used.items() if code in LOADS or share > 1 + ROUNDING}
+        return max(counting or self.used, key=self.used.__getitem__)
 
 
 def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> list[MotorUse]:
@@ -52,14 +51,15 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
     motors = catalogue.motors
     if not motors:
         return []
-    own = {name: np.array([_known(getattr(motor, name)) for motor in motors]) for name in LISTED_FIGURES}
-    used, inertia_ratio = _utilisations(application, gear, catalogue, own)
-    u = application.requirements.utilisation
+    evaluation = with_motors(application, motors, catalogue.listed([gear]), catalogue)
+    case, u = evaluation.case, application.requirements.utilisation
+    ratios = inertia_ratio(case.duty, case.gears, case.asked["requirements.motor.inertia_kgm2"])[:, 0].tolist()
+    places = [place for place, check in enumerate(evaluation.checks) if check.code in MOTOR_CHECKS]
     uses = []
-    for place, motor in enumerate(motors):
-        shares = {code: values.item(place) for code, values in used.items() if not np.isnan(values[place])}
-        ratio = inertia_ratio.item(place)
-        if shares and not (asks_inertia_ratio(application) and motor.inertia_kgm2 is None):
+    for row, (motor, ratio) in enumerate(zip(motors, ratios, strict=True)):
+        asked = [place for place in places if evaluation.asked.item(place, row, 0)]
+        shares = {evaluation.checks[place].code: evaluation.used.item(place, row, 0) for place in asked}
+        if shares and not np.isnan(list(shares.values())).any():
             fits = all(share <= allowed(code, u) * (1 + ROUNDING) for code, share in shares.items())
             uses.append(MotorUse(motor, shares, None if np.isnan(ratio) else ratio, fits))
     return sorted(uses, key=_order)
@@ -80,44 +80,28 @@ def _order(use: MotorUse) -> tuple[bool, float, float]:
     return not use.fits, (use.motor.rated_torque_Nm or np.inf) if use.fits else worst, -worst
 
 
-def _utilisations(
-    application: Application, gear: Gear, catalogue: Catalogue, own: Mapping[str, FloatArray]
-) -> tuple[dict[str, FloatArray], FloatArray]:
-    """Demand over limit by check, and inertia ratio; shape (motors,), NaN where a figure is not known."""
-    asked = application.requirements.motor
-    duty = Duty.of([_without_motor(application)])
-    figures = Figures(duty, catalogue.listed([gear]), catalogue)
-    peak, rms = (
-        np.full(len(catalogue.motors), torque.item())
-        for torque in (figures.motor_peak_torque_Nm, figures.motor_rated_torque_Nm)
-    )
-    heavy = np.flatnonzero(~np.isnan(own["inertia_kgm2"]))
-    if duty.courses and heavy.size:
-        at_peak, at_rms = efficiencies(duty, gear, catalogue)
-        peak[heavy], rms[heavy] = torques_along(
-            duty.courses[0],
-            figures.gears.columns,
-            [0],
-            efficiency_at_peak=at_peak,
-            efficiency_at_rms=at_rms,
-            inertia_kgm2=own["inertia_kgm2"][heavy],
-            pause_s=application.duty_cycle.pause_s,
-        )
-    ratios = inertia_ratio(duty, figures.gears.columns, own["inertia_kgm2"])[0]
-    most = _known(asked.inertia_ratio if asked else None)
-    used = {
-        "motor_speed": figures.maximum_input_speed_rpm.item() / own["maximum_speed_rpm"],
-        "motor_peak_torque": peak / own["peak_torque_Nm"],
-        "motor_rated_torque": rms / own["rated_torque_Nm"],
-        "motor_rated_speed": figures.average_input_speed_rpm.item() / own["rated_speed_rpm"],
-        "inertia_ratio": ratios / most,
+def with_motors(
+    application: Application, motors: Sequence[ListedMotor | MotorEntry], gears: GearList, catalogue: Catalogue
+) -> Evaluation:
+    """Evaluation of an application with each of many motors in place of its own, a row for each of them."""
+    figures = {
+        name: np.array([[_known(getattr(motor, name))] for motor in motors], dtype=np.float64)
+        for name in LISTED_FIGURES
     }
-    return used, ratios
+    return evaluate(Duty.of([_without_motor(application)]).with_motors(figures), gears, catalogue)
 
 
 def _without_motor(application: Application) -> Application:
-    asked = application.requirements.model_copy(update={"motor": None})
-    return application.model_copy(update={"requirements": asked})
+    """The application without a motor of its own; the permitted inertia ratio stays."""
+    asked = application.requirements.motor
+    bound = Motor(inertia_ratio=asked.inertia_ratio) if asks_inertia_ratio(application) and asked else None
+    return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": bound})})
+
+
+def entries_of(motors: Sequence[ListedMotor]) -> list[MotorEntry]:
+    """Motors of motors.csv as entries of a list."""
+    names = ("designation", *LISTED_FIGURES)
+    return [MotorEntry.model_construct(**{name: getattr(motor, name) for name in names}) for motor in motors]
 
 
 def with_motor(application: Application, motor: ListedMotor) -> Application:
@@ -125,6 +109,15 @@ def with_motor(application: Application, motor: ListedMotor) -> Application:
     asked = application.requirements.motor
     named = Motor(designation=motor.designation, inertia_ratio=asked.inertia_ratio if asked else None)
     return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": named})})
+
+
+def with_figures(application: Application, motor: MotorEntry) -> Application:
+    """The application with a motor's figures in it; the permitted inertia ratio stays."""
+    asked = application.requirements.motor
+    own = Motor(
+        **{name: getattr(motor, name) for name in LISTED_FIGURES}, inertia_ratio=asked.inertia_ratio if asked else None
+    )
+    return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": own})})
 
 
 # --- Which gears ------------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from hpn.words.reply import Mixed, Reply
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Rounding, Sentence
 
-DIGITS: Mapping[str, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6, "N": 6}
+DIGITS: Mapping[str, int] = {"Nm": 6, "percent": 3, "s": 6, "h": 6, "N": 6, "kW_per_s": 4}
 """Digits of the numbers in a notice, by unit."""
 
 NOTICES: Mapping[str, str] = {
@@ -136,6 +136,18 @@ NOTICES: Mapping[str, str] = {
     "gear_far_below_motor": N_(
         "The motor can break the gear: its peak torque of {peak_Nm} puts {torque_Nm} on {name} (T_M {momentary_Nm}). "
         "Set the drive’s torque limit to {limit_Nm}, {share_percent} of that peak, before the axis is started."
+    ),
+    "pairs_not_mated": N_("Whether motor and gear fit mechanically (flange, shaft, coupling) is not judged."),
+    "no_ratio_for_motor": N_(
+        "No ratio can save these motors: {names}. With their inertia the RMS torque is above the rated torque at any "
+        "ratio. Less inertia or more torque would do, M² / J_m of at least {rate_kW_per_s}; gentler ramps lower that."
+    ),
+    "motor_figures_unknown": N_(
+        "Maximum speed, rated torque or peak torque of these motors are not known, and not checked: {names}."
+    ),
+    "motor_inertia_unknown": N_(
+        "These motors are not rated, since an inertia ratio or a resonance is required and their inertia is not known: "
+        "{names}."
     ),
     "torque_signs_not_given": N_(
         "No torque has a sign, so the position error assumes each of them in both directions. Where that is not so, "

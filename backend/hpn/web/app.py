@@ -10,7 +10,7 @@ from starlette.middleware.cors import CORSMiddleware
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES
 
 from hpn import ENGINE_VERSION
-from hpn.application import Application
+from hpn.application import Application, Pairing
 from hpn.catalogue import load_catalogue
 from hpn.documents.axis import Axis
 from hpn.documents.document import Document
@@ -28,6 +28,7 @@ from hpn.web.api import (
     machines,
     motors,
     openapi,
+    pairs,
     revisions,
     schemas,
     select,
@@ -114,6 +115,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     fleet.router,
     catalogue.router,
     motors.router,
+    pairs.router,
     selections.router,
     selection_revisions.router,
     machines.router,
@@ -146,6 +148,7 @@ ROUTERS: tuple[APIRouter, ...] = (
 
 BODIES = (
     Application,
+    Pairing,
     schemas.Batch,
     archive.SaveRequest,
     archive.Names,

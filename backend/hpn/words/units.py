@@ -44,6 +44,7 @@ SYMBOLS = {
     "Hz": "Hz",
     "rad_per_s": "rad/s",
     "J": "J",
+    "kW_per_s": "kW/s",
 }
 """Unit suffix of a field name -> the symbol a reader sees."""
 

@@ -90,6 +90,22 @@ def square_torque(
     return squares
 
 
+def least_square_per_inertia(course: Course, *, efficiency: FloatArray, pause_s: float) -> FloatArray:
+    """Least square of the RMS torque that any ratio leaves to a motor, over its inertia, in Nm²/(kg m²); (gears,).
+
+    The square is A / i² + 2 B J + C i² J² with the means A, B and C over the cycle of (a T)², a T α and α², a = 1 / η
+    where the motor drives and η where the load does. It is least at i² = √(A / C) / J: 2 J (√(A C) + B) (Giberti et
+    al., Mechatronics 20, 2010). `efficiency` broadcasts to (gears, phases); without a torque at no load.
+    """
+    a = share_of_torque(course, np.ones(1), efficiency)
+    cycle_s = course.duration_s.sum() + pause_s
+    A = (a**2 * course.square_torque).sum(axis=1) / cycle_s
+    B = (a * course.torque_acceleration).sum(axis=1) / cycle_s
+    C = course.square_acceleration.sum() / cycle_s
+    least: FloatArray = 2 * (np.sqrt(A * C) + B)
+    return least
+
+
 def peak_torque(
     course: Course,
     *,

@@ -1,0 +1,129 @@
+"""A request for pairs of gear and motor: an application without a motor, motors, and how the pairs are ordered."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticCustomError
+
+from hpn.application.application import Application
+from hpn.application.requirements import LISTED_FIGURES
+from hpn.words.fields import Model, Positive, at_most, refused
+
+PairRank = Literal["weight", "utilisation", "inertia_ratio", "resonance"]
+BestOf = Literal["motor"]
+
+MOST_MOTORS = 1000
+"""Motors that a request may have, and pairs that a reply may have."""
+
+
+class MotorEntry(Model):
+    """A motor of a list: its figures at the shaft, as its data sheet has them."""
+
+    designation: Annotated[str, Field(min_length=1, max_length=100, description="Name of the motor, unique in a list.")]
+    maximum_speed_rpm: Positive | None = Field(None, description="Maximum motor speed.", examples=[6000.0])
+    rated_speed_rpm: Positive | None = Field(
+        None, description="Rated motor speed, the limit of the average speed.", examples=[3000.0]
+    )
+    rated_torque_Nm: Positive | None = Field(
+        None, description="Continuous torque up to the rated speed, the limit of the RMS.", examples=[2.4]
+    )
+    stall_torque_Nm: Positive | None = Field(None, description="Continuous torque at standstill, M₀.", examples=[2.8])
+    peak_torque_Nm: Positive | None = Field(None, description="Peak motor torque.", examples=[7.2])
+    inertia_kgm2: Positive | None = Field(
+        None, description="Moment of inertia of the motor’s rotor, its brake included.", examples=[0.00015]
+    )
+    weight_kg: Positive | None = Field(None, description="Weight of the motor.", examples=[2.1])
+
+    @model_validator(mode="after")
+    def _is_in_order(self) -> Self:
+        found = [
+            ((low,), PydanticCustomError("motor_order", "is above {high}", {"high": high}))
+            for low, high in _IN_ORDER
+            if (getattr(self, low) or 0.0) > (getattr(self, high) or float("inf"))
+        ]
+        if found:
+            raise refused(self, *found)
+        return self
+
+
+_IN_ORDER = (
+    ("rated_speed_rpm", "maximum_speed_rpm"),
+    ("rated_torque_Nm", "peak_torque_Nm"),
+    ("stall_torque_Nm", "peak_torque_Nm"),
+)
+"""Figures of a motor of which the first is no larger than the second."""
+
+
+class Distinct(Model):
+    """Something with motors, of which no two have one designation."""
+
+    motors: tuple[MotorEntry, ...] | None = None
+
+    @model_validator(mode="after")
+    def _are_distinct(self) -> Self:
+        seen, repeated = set[str](), []
+        for place, motor in enumerate(self.motors or ()):
+            if motor.designation in seen:
+                repeated.append((("motors", place, "designation"), PydanticCustomError("twice", "is there twice")))
+            seen.add(motor.designation)
+        if repeated:
+            raise refused(self, *repeated[:MOST_TOLD])
+        return self
+
+
+MOST_TOLD = 20
+"""Motors that stand there twice of which an error tells."""
+
+MOTORS: Any = Field(min_length=1, max_length=MOST_MOTORS)
+
+
+def _for_motors(value: object) -> Application:
+    return value if isinstance(value, Application) else Application.model_validate(value, context={"motors": True})
+
+
+class Pairing(Distinct):
+    """An application on every gear that it allows, with each of many motors."""
+
+    application: Annotated[Application, BeforeValidator(_for_motors)] = Field(
+        description="The application; of a motor of its own it has inertia_ratio alone."
+    )
+    motors: Annotated[tuple[MotorEntry, ...], MOTORS, at_most(MOST_MOTORS)] | None = Field(
+        None, description="The motors, in place of a list."
+    )
+    list: Annotated[str, Field(min_length=1, max_length=40)] | None = Field(
+        None, description="Id of a list in place of motors: server, the motors of motors.csv.", examples=["server"]
+    )
+    rank_by: PairRank = Field("weight", description="Order of the pairs: ascending, resonance descending.")
+    drive_resonance_Hz: Positive | None = Field(
+        None, description="Least resonance of load and motor against each other.", examples=[15.0]
+    )
+    top: Annotated[int, Field(ge=1, le=MOST_MOTORS, strict=True)] = Field(
+        100, description="Largest number of pairs in the reply."
+    )
+    best_of: BestOf | None = Field(None, description="motor: of each motor the best pair alone.")
+
+    @field_validator("application")
+    @classmethod
+    def _has_no_motor(cls, application: Application) -> Application:
+        motor = application.requirements.motor
+        if motor is not None and any(getattr(motor, name) is not None for name in (*LISTED_FIGURES, "designation")):
+            problem = PydanticCustomError("own_motor", "takes the place of the list: leave all but inertia_ratio out")
+            raise refused(application, (("requirements", "motor"), problem))
+        return application
+
+    @field_validator("drive_resonance_Hz")
+    @classmethod
+    def _knows_its_load(cls, least: float | None, info: ValidationInfo) -> float | None:
+        application: Application | None = info.data.get("application")
+        if least is None or application is None:
+            return least
+        if application.duty_cycle.motion is None and application.requirements.load_inertia_kgm2 is None:
+            raise PydanticCustomError("inertia_of_load", "needs a motion, or requirements.load_inertia_kgm2")
+        return least
+
+    @model_validator(mode="after")
+    def _has_motors(self) -> Self:
+        if (self.motors is None) == (self.list is None):
+            problem = PydanticCustomError("motors_or_list", "give either motors or the id of a list")
+            raise refused(self, (("motors",), problem))
+        return self
