@@ -39,6 +39,7 @@ STYLES = {
         *RESULT,
         "machine-axes",
         "machine",
+        "revisions",
         "verdict",
         "phone",
         "print",

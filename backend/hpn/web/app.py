@@ -64,6 +64,7 @@ from hpn.web.pages import (
 from hpn.web.pages import axis as axis_pages
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
+from hpn.web.pages import revisions as revision_pages
 from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
 
@@ -143,6 +144,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     saved_list.router,
     saving.router,
     selection_pages.router,
+    revision_pages.router,
 )
 
 

@@ -10,9 +10,14 @@ from starlette.datastructures import State
 from starlette.requests import Request
 
 from hpn import ENGINE_VERSION
+from hpn.application import InputError
+from hpn.application.faults import Fault
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import AxisQuestion, answers
 from hpn.documents.axis import MOST_AXES, MOST_PHASES, MOST_REVISIONS
+from hpn.engine.selection import encode as encode_selection
+from hpn.engine.selection import select
+from hpn.links.writer import to_link
 from hpn.store import Change, ExcessError, KeyReusedError, KeySpentError, Limits, Machine, Once, SavedAxis
 from hpn.store.records import Answer, DocumentKind
 from hpn.store.writing import order_of
@@ -172,6 +177,18 @@ def answered(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) 
         (axis.number, axis.version, columns_of(answer))
         for axis, answer in zip(machine.items, answers(asked, catalogue), strict=True)
     ]
+
+
+def selection_of(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes:
+    """JSON of the selection of an axis; Problem 409 for one that is open."""
+    found = resolved(axis, common_of(machine))
+    if found.application is None:
+        faults = [Fault(location, sentence.text, code) for location, sentence, code in found.faults]
+        raise Problem(409, "the axis is open: its application is incomplete, or has errors", faults)
+    try:
+        return encode_selection(select(found.application, catalogue, to_link))
+    except InputError as error:
+        raise Problem(409, str(error), Problem.of(error).errors) from None
 
 
 def of_today(machine: Machine, catalogue: Catalogue) -> Machine:

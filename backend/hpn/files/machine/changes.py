@@ -1,6 +1,6 @@
 """Differences of two documents in words and numbers, alike in PDF and workbook."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
@@ -12,7 +12,7 @@ from hpn.catalogue import Catalogue
 from hpn.documents.differences import DifferentAnswer, DifferentAxis, DifferentInput, DocumentDifferences, differences
 from hpn.documents.revision import Frozen, FrozenAxis
 from hpn.files.export import ExportTitle
-from hpn.files.machine.inputs import line_of, path_of
+from hpn.files.machine.inputs import label_of, line_of, path_of
 from hpn.files.machine.words import STATUS, bound_of, check_of
 from hpn.words.quantities import CANDIDATE, DUTY, GEAR
 from hpn.words.reader import NOTHING, Reader
@@ -94,6 +94,33 @@ def shown(line: Line, reader: Reader) -> str:
     if line.code in ("candidate.utilisation", "candidate.worst_utilisation") and isinstance(line.value, float | int):
         return reader.percent(line.value)
     return line.text(reader) if line.value is not None else NOTHING
+
+
+Cell = tuple[str, str, str]
+"""Name of a value and the value in both documents, as they are read."""
+
+
+def cells_of(axis: DifferentAxis, reader: Reader) -> list[Cell]:
+    """Inputs of an axis that differ, else its figures."""
+    return input_cells(axis.inputs, reader) or answer_cells(
+        [each for each in axis.figures if each.field != "utilisation"], reader
+    )
+
+
+def input_cells(inputs: Iterable[DifferentInput], reader: Reader) -> list[Cell]:
+    """Inputs that differ."""
+    return [_cell(reader.told(label_of(each.pointer)), input_lines(each), reader) for each in inputs]
+
+
+def answer_cells(answered: Iterable[DifferentAnswer], reader: Reader) -> list[Cell]:
+    """Verdicts and figures that differ."""
+    pairs = (answer_lines(each, reader) for each in answered)
+    return [_cell(lines[0].label(reader), lines, reader) for lines in pairs]
+
+
+def _cell(name: str, lines: tuple[Line, Line], reader: Reader) -> Cell:
+    one, other = lines
+    return name, shown(one, reader), shown(other, reader)
 
 
 def used(axis: FrozenAxis | None, reader: Reader) -> str:

@@ -6,10 +6,9 @@ from hpn.documents.differences import DifferentAxis
 from hpn.documents.revision import FrozenAxis
 from hpn.files.machine.changes import (
     DifferencesExport,
-    answer_lines,
+    cells_of,
     common_lines,
     effect,
-    input_lines,
     shown,
     used,
 )
@@ -86,25 +85,18 @@ def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
 
 
 def _row(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None], reader: Reader) -> dict[str, Any]:
-    cells = [[reader.told(label_of(each.pointer)), *_both(input_lines(each), reader)] for each in axis.inputs]
-    if not cells:
-        lines = [answer_lines(each, reader) for each in axis.figures if each.field != "utilisation"]
-        cells = [[pair[0].label(reader), *_both(pair, reader)] for pair in lines]
+    cells = cells_of(axis, reader)
     more = len(cells) - MOST_CELLS
     return {
         "number": axis.number,
         "name": axis.name or "",
-        "cells": cells[:MOST_CELLS],
+        "cells": [list(cell) for cell in cells[:MOST_CELLS]],
         "more": reader.told(Sentence(MORE_CELLS, {"count": reader.exact(more)})) if more > 0 else "",
         "gears": [side.gear if side else None for side in (axis.side_from, axis.side_to)],
         "bars": [_bar(side, reader) for side in sides],
         "used": [used(side, reader) for side in sides],
         "effect": effect(axis, sides, reader),
     }
-
-
-def _both(lines: Any, reader: Reader) -> list[str]:
-    return [shown(line, reader) for line in lines]
 
 
 def _bar(axis: FrozenAxis | None, reader: Reader) -> dict[str, Any] | None:

@@ -9,15 +9,12 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn import ENGINE_VERSION
-from hpn.application import InputError
-from hpn.application.faults import NO_FIELD, Fault
+from hpn.application.faults import NO_FIELD
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import AxisQuestion, answers
 from hpn.documents.axis import MOST_AXES, MOST_BYTES, READ_ONLY, Axis
 from hpn.documents.merge import resolve
-from hpn.engine.selection import Selection, select
-from hpn.engine.selection import encode as encode_selection
-from hpn.links.writer import to_link
+from hpn.engine.selection import Selection
 from hpn.store import AxisDraft, Change, Machine, MachineDraft, Once, SavedAxis
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
@@ -42,6 +39,7 @@ from hpn.web.machines import (
     no_axis,
     once_of,
     require_document,
+    selection_of,
     tag_of,
 )
 from hpn.words.fields import Model
@@ -187,18 +185,6 @@ async def read_selection(request: Request, id: schemas.Id, number: Number) -> Re
     machine, axis = await axis_of(request, id, number)
     body = await compute(request, "pages", selection_of, machine, axis, request.app.state.catalogue)
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
-
-
-def selection_of(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes:
-    """JSON of the selection of an axis; Problem 409 for one that is open."""
-    found = resolved(axis, common_of(machine))
-    if found.application is None:
-        faults = [Fault(location, sentence.text, code) for location, sentence, code in found.faults]
-        raise Problem(409, "the axis is open: its application is incomplete, or has errors", faults)
-    try:
-        return encode_selection(select(found.application, catalogue, to_link))
-    except InputError as error:
-        raise Problem(409, str(error), Problem.of(error).errors) from None
 
 
 @router.put(

@@ -19,11 +19,11 @@ from hpn.web.api import schemas
 from hpn.web.api.axes import Number
 from hpn.web.api.files import FILES, File, Lang, Options, answer_file, described
 from hpn.web.api.machines import ADDRESS
-from hpn.web.api.revisions import State, catalogues_of, document_of, documents_of, state_of
 from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.visit import absolute
 from hpn.web.machines import found, no_axis
+from hpn.web.states import State, catalogues_of, document_of, documents_of, state_of, states_of
 from hpn.words.wording import N_, Sentence
 
 XLSX = next(file.media_type for file in FILES if file.name.endswith(".xlsx"))
@@ -169,14 +169,9 @@ def _route_of_differences(file: File) -> None:
     async def of_differences(
         request: Request, id: schemas.Id, before: Before, after: After, lang: Lang = None
     ) -> Response:
-        if label_key(before) == label_key(after) == TODAY:
-            detail = "today is compared with a revision, or with now"
-            raise Problem(422, detail, [(("to",), detail)])
         machine = await found(request, id)
-        states = [await state_of(request, machine, label) for label in (before, after)]
-        return await answer_file(
-            request, file, lang, {}, lambda: _compared(request, machine, (before, after), (states[0], states[1]))
-        )
+        states = await states_of(request, machine, before, after)
+        return await answer_file(request, file, lang, {}, lambda: _compared(request, machine, (before, after), states))
 
     _add(file, of_differences)
 

@@ -1,6 +1,6 @@
 """Revisions of documents over REST, and what is read out of the working copy: gears to order and fewest kinds."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 from starlette.requests import Request
@@ -8,28 +8,23 @@ from starlette.responses import Response
 
 from hpn.catalogue import Catalogue
 from hpn.documents.axis import MOST_AXES
-from hpn.documents.differences import DocumentDifferences, differences, today
+from hpn.documents.differences import DocumentDifferences, differences
 from hpn.documents.gears import GearOrder, Placed, gears_of
 from hpn.documents.kinds import MachineKinds
-from hpn.documents.revision import NOW, TODAY, Frozen, RevisionBlock, decode, label_key
-from hpn.store import Machine, RevisionLine
+from hpn.documents.revision import RevisionBlock, decode
+from hpn.store import Machine
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
-from hpn.web.api.freezing import freeze, revision
 from hpn.web.api.machines import ADDRESS
 from hpn.web.api.replies import JSONBytes, RevisionReply, encode
-from hpn.web.columns import frozen_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of
 from hpn.web.door.pools import compute
-from hpn.web.door.problems import Problem
 from hpn.web.edits import kinds_in
-from hpn.web.machines import (
-    found,
-    made_before,
-    once_of,
-)
+from hpn.web.freezing import freeze, revision
+from hpn.web.machines import found, made_before, once_of
+from hpn.web.states import catalogues_of, documents_of, states_of
 
 Label = Annotated[str, Path(max_length=20, description="Label of the revision, in any case.")]
 
@@ -111,66 +106,12 @@ async def read_differences(
     """Differences between two revisions, a revision and the working copy (`now`), or a state and what today's
     catalogue and engine say to it (`today`); by axis, those with another verdict first.
     """
-    if label_key(before) == label_key(after) == TODAY:
-        detail = "today is compared with a revision, or with now"
-        raise Problem(422, detail, [(("to",), detail)])
     machine = await found(request, id)
-    states = [await state_of(request, machine, label) for label in (before, after)]
+    states = await states_of(request, machine, before, after)
     body = await compute(
         request, "batches", lambda: encode(differences(*documents_of(*states), catalogues_of(*states)))
     )
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
-
-
-class State(NamedTuple):
-    """A revision as it was frozen, or the working copy, or None for what today says to the other; and its catalogue."""
-
-    content: bytes | Machine | None
-    catalogue: Catalogue | None
-    line: RevisionLine | None = None
-
-
-async def state_of(request: Request, machine: Machine, label: str) -> State:
-    """A revision by its label, the working copy or today; Problem 404."""
-    today_s: Catalogue = request.app.state.catalogue
-    if label_key(label) == TODAY:
-        return State(None, today_s)
-    if label_key(label) == NOW:
-        return State(machine, await _kept(request, machine.catalogue_version))
-    line, frozen = await revision(request, machine.id, label)
-    return State(frozen, await _kept(request, line.catalogue_version), line)
-
-
-async def _kept(request: Request, version: str) -> Catalogue | None:
-    """Catalogue of a version; None where it is not kept."""
-    catalogue: Catalogue = request.app.state.catalogue
-    if version == catalogue.version:
-        return catalogue
-    kept: Catalogue | None = await request.app.state.store.catalogue(version)
-    return kept
-
-
-def documents_of(one: State, other: State) -> tuple[Frozen, Frozen]:
-    """The documents of two states of which one at least is not today."""
-    known = [document_of(each.content) for each in (one, other)]
-    there = next(each for each in known if each is not None)
-    first, second = (
-        today(there, state.catalogue) if each is None and state.catalogue else each or there
-        for each, state in zip(known, (one, other), strict=True)
-    )
-    return first, second
-
-
-def catalogues_of(one: State, other: State) -> tuple[Catalogue | None, Catalogue | None]:
-    """Their catalogues."""
-    return one.catalogue, other.catalogue
-
-
-def document_of(state: bytes | Machine | None) -> Frozen | None:
-    """The document of a state; None for today."""
-    if isinstance(state, Machine):
-        return frozen_of(state, state.items)
-    return None if state is None else decode(state)
 
 
 @router.get(

@@ -13,7 +13,6 @@ from hpn.documents.revision import RevisionBlock
 from hpn.store import Draft
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
-from hpn.web.api.freezing import freeze, revision
 from hpn.web.api.replies import JSONBytes, RevisionReply, SavedSelectionReply, encode
 from hpn.web.api.selections import draft_in, matched_version, represented
 from hpn.web.archive import Labels, Line, changeable, with_catalogue
@@ -21,6 +20,7 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import conditional, etag_of
 from hpn.web.door.pools import calculate
+from hpn.web.freezing import freeze, revision
 from hpn.web.machines import made_before, once_of
 
 Label = Annotated[str, Path(max_length=20, description="Label of the revision, in any case.")]

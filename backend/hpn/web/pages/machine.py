@@ -32,6 +32,7 @@ from hpn.web.pages.machine_editing import OF_MANY, Editing, opened_common
 from hpn.web.pages.machine_rows import opened
 from hpn.web.pages.machine_view import ADDRESS, SHOWN, Chosen, MachineView
 from hpn.web.pages.rendering import or_reason, page, reason
+from hpn.web.pages.revisions_view import next_revision
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
 from hpn.words.reader import Reader
 from hpn.words.titles import faults_of
@@ -90,6 +91,7 @@ async def shown(request: Request, saved: Machine, status: int, form: TitleForm, 
     view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params), since)
     today = await _today(request, saved)
     values = {"form": form, "today": today, "editing": editing, "may_change": may_change(request, saved)}
+    values |= next_revision(latest)
     return await compute(request, "pages", _page, request, view, status, values)
 
 

@@ -8,13 +8,12 @@ from starlette.requests import Request
 from hpn.catalogue import Catalogue
 from hpn.documents.revision import RevisionBlock
 from hpn.store import Draft, LabelTakenError, Machine, Once, RevisionDraft, RevisionLine, SavedAxis
-from hpn.web.api.axes import selection_of
 from hpn.web.columns import revision_of
 from hpn.web.door.conditions import other_state
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.machines import LIMITS, RETRY_SECONDS, TRIES, editable, guarded, of_today, require_document
+from hpn.web.machines import LIMITS, RETRY_SECONDS, TRIES, editable, guarded, of_today, require_document, selection_of
 from hpn.words.wording import N_, Sentence
 
 SAVE_FIRST = N_("nobody has saved this machine yet: save it first, then freeze a revision")

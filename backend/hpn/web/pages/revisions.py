@@ -1,0 +1,183 @@
+"""Revisions of a machine or a selection: their list, two states compared cell by cell, and the next one saved."""
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import ValidationError
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+
+from hpn import ENGINE_VERSION
+from hpn.documents.revision import TODAY, RevisionBlock, decode
+from hpn.documents.summary import Summary, summary_of
+from hpn.files.export import Heading
+from hpn.files.machine.changes import DifferencesExport
+from hpn.store import Machine, RevisionLine
+from hpn.store.records import DocumentKind
+from hpn.web.door.access import admit
+from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.hosts import require_same_origin
+from hpn.web.door.pools import compute
+from hpn.web.door.problems import Problem
+from hpn.web.door.visit import absolute, current
+from hpn.web.freezing import freeze
+from hpn.web.machines import FEW_AXES, found
+from hpn.web.pages import machine as machine_pages
+from hpn.web.pages.machine_view import MachineView
+from hpn.web.pages.rendering import or_reason, page
+from hpn.web.pages.revisions_view import BLOCK, MOST_LINES, STATES, Compared, next_label, next_revision, pair_of
+from hpn.web.pages.saved_list import version_of
+from hpn.web.pages.saving import REASON as SELECTION_REASON
+from hpn.web.states import State, catalogues_of, documents_of, state_of, states_of
+from hpn.words.wording import Sentence
+
+PLACES: Mapping[DocumentKind, str] = {"machine": "/machines", "selection": "/selections"}
+FEW_IN_ALL = 1000
+"""Axes that the list counts in all; older revisions stand in it without figures."""
+
+
+async def _found(request: Request, kind: DocumentKind) -> Machine:
+    return await found(request, request.path_params[{"machine": "machine", "selection": "id"}[kind]], None, kind)
+
+
+async def shown(
+    request: Request, machine: Machine, status: int = 200, block: Mapping[str, str] | None = None, said: Any = ()
+) -> Response:
+    """The page of a document's revisions, with the form of the next one as it was filled in."""
+    lines: list[RevisionLine] = await request.app.state.store.revisions(machine.id)
+    pair = pair_of(machine, lines, request.query_params)
+    states = await states_of(request, machine, *pair) if pair else None
+    brief = {line.number: await state_of(request, machine, line.label) for line in _few(lines)}
+    values: dict[str, Any] = {
+        "saved": machine,
+        "place": f"{PLACES[machine.kind]}/{machine.id}",
+        "lines": lines[:MOST_LINES],
+        "all_lines": lines,
+        "is_new": not lines or machine.updated > lines[0].created,
+        "may_change": machine_pages.may_change(request, machine),
+        **next_revision(lines),
+        "said": said,
+        "states": STATES,
+        "engine_version": ENGINE_VERSION,
+        "catalogue_version": request.app.state.catalogue.version,
+    }
+    values["block"] |= block or {}
+    few = len(machine.items) <= FEW_AXES
+    return await compute(request, "pages" if few else "batches", _page, request, status, states, pair, brief, values)
+
+
+def _few(lines: list[RevisionLine]) -> list[RevisionLine]:
+    """The latest revisions, as many as may be counted."""
+    few, axes = list[RevisionLine](), 0
+    for line in lines[:MOST_LINES]:
+        axes += max(line.axes, FEW_IN_ALL // MOST_LINES)
+        if axes > FEW_IN_ALL:
+            break
+        few.append(line)
+    return few
+
+
+def _page(
+    request: Request,
+    status: int,
+    states: tuple[State, State] | None,
+    pair: tuple[str, str] | None,
+    brief: Mapping[int, State],
+    values: dict[str, Any],
+) -> Response:
+    machine: Machine = values["saved"]
+    compared, today = None, None
+    if states and pair:
+        whole = request.query_params.get("show") == "all"
+        compared = Compared(_export(request, machine, pair, states), current(), whole)
+        today = _today(request, machine, pair, states[1], compared)
+    counts: dict[int, Summary] = {
+        number: summary_of(decode(state.content), state.catalogue)
+        for number, state in brief.items()
+        if isinstance(state.content, bytes)
+    }
+    now = MachineView(machine, request.app.state.catalogue)
+    return page(
+        request, "revisions.html", status, compared=compared, today=today, pair=pair, counts=counts, now=now, **values
+    )
+
+
+def _export(
+    request: Request, machine: Machine, pair: tuple[str, str], states: tuple[State, State]
+) -> DifferencesExport:
+    link = absolute(request, f"{PLACES[machine.kind]}/{machine.id}/revisions?from={pair[0]}&to={pair[1]}")
+    heading = Heading(machine.title or "", machine.reference or "", machine.author or "")
+    return DifferencesExport(pair, documents_of(*states), catalogues_of(*states), link, heading, made=datetime.now(UTC))
+
+
+def _today(
+    request: Request, machine: Machine, pair: tuple[str, str], last: State, compared: Compared
+) -> Compared | bool | None:
+    """The second state beside today's catalogue and engine: True where both are the same, None where it is not asked
+    here, of today itself or of many axes.
+    """
+    if pair[1] == TODAY:
+        return None
+    summary = compared.sides[1]
+    if (*summary.engine_versions, *summary.catalogue_versions) == (ENGINE_VERSION, request.app.state.catalogue.version):
+        return True
+    if len(compared.export.documents[1].axes) > FEW_AXES:
+        return None
+    today = State(None, request.app.state.catalogue)
+    return Compared(_export(request, machine, (pair[1], TODAY), (last, today)), current())
+
+
+async def _saved(request: Request, kind: DocumentKind) -> Response:
+    """Freezes the working copy under the label of a form, and leads back to the list."""
+    require_same_origin(request)
+    fields = dict(pairs_of(await read_form(request)))
+    machine = await _found(request, kind)
+    given = {name: fields.get(name, "").strip() for name in BLOCK}
+    try:
+        block = RevisionBlock.model_validate({name: text for name, text in given.items() if text})
+        await freeze(request, machine.id, block, None, version=version_of(fields))
+    except ValidationError as error:
+        problem = Problem.of(error)
+        return await shown(
+            request, machine, 422, given, [Sentence("{text}", {"text": each.text}) for each in problem.errors]
+        )
+    except Problem as error:
+        if error.status_code != 409:
+            raise
+        lines = await request.app.state.store.revisions(machine.id)
+        return await shown(request, machine, 409, {**given, "label": next_label(lines)}, error.sentences)
+    return RedirectResponse(f"{PLACES[kind]}/{machine.id}/revisions", 303)
+
+
+@or_reason(machine_pages.REASON)
+async def show_of_machine(request: Request) -> Response:
+    """Revisions of a machine, and two of them, the working copy or today compared."""
+    return await shown(request, await _found(request, "machine"))
+
+
+@or_reason(machine_pages.REASON)
+async def save_of_machine(request: Request) -> Response:
+    """Saves the working copy of a machine as a revision."""
+    return await _saved(request, "machine")
+
+
+@or_reason(SELECTION_REASON)
+async def show_of_selection(request: Request) -> Response:
+    """Revisions of a selection, and two of them compared."""
+    return await shown(request, await _found(request, "selection"))
+
+
+@or_reason(SELECTION_REASON)
+async def save_of_selection(request: Request) -> Response:
+    """Saves the working copy of a selection as a revision."""
+    return await _saved(request, "selection")
+
+
+router = APIRouter(include_in_schema=False)
+OF_MACHINE, OF_SELECTION = "/machines/{machine}/revisions", "/selections/{id}/revisions"
+router.add_api_route(OF_MACHINE, show_of_machine, dependencies=[admit("reading")])
+router.add_api_route(OF_MACHINE, save_of_machine, methods=["POST"], dependencies=[admit("deleting")])
+router.add_api_route(OF_SELECTION, show_of_selection, dependencies=[admit("reading")])
+router.add_api_route(OF_SELECTION, save_of_selection, methods=["POST"], dependencies=[admit("deleting")])

@@ -1,0 +1,208 @@
+"""Revisions of a document and the comparison of two of its states, as their page shows them."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from string import ascii_uppercase
+from typing import Any, NamedTuple
+
+from hpn.documents.differences import DifferentAxis, DocumentDifferences
+from hpn.documents.revision import NOW, TODAY, FrozenAxis, label_key
+from hpn.documents.summary import Summary, gear_of
+from hpn.files.machine.changes import Cell, DifferencesExport, answer_cells, cells_of, effect, input_cells
+from hpn.files.machine.words import bound_of, used
+from hpn.store import Machine, RevisionLine
+from hpn.words.reader import Reader
+from hpn.words.wording import N_
+
+MOST_LINES, MOST_AXES, MOST_CELLS = 100, 500, 12
+"""Revisions of the list, axes of a comparison and inputs of each that the page shows; the workbook has all."""
+
+STATES = {NOW: N_("Working copy"), TODAY: N_("Today")}
+"""States beside revisions."""
+
+
+BLOCK = {
+    "label": N_("Label"),
+    "author": N_("Author"),
+    "checked": N_("Checked"),
+    "approved": N_("Approved"),
+    "note": N_("Note"),
+}
+"""Fields of the form that saves a revision."""
+
+
+class Side(NamedTuple):
+    """Gear of an axis in one state, and how far it is used."""
+
+    gear: str | None
+    utilisation: float | None
+    bound: float
+    status: str
+    text: str
+
+    @classmethod
+    def of(cls, axis: FrozenAxis | None, reader: Reader) -> "Side | None":
+        """The same of an axis; None where the state lacks it."""
+        if axis is None:
+            return None
+        answer = axis.answer
+        return cls(gear_of(axis), answer.utilisation, bound_of(axis), answer.status, used(axis, reader))
+
+
+class AxisRow(NamedTuple):
+    """An axis in both states: cells that differ, those that are left out, and what they did to its gear."""
+
+    number: int
+    name: str
+    before: Side | None
+    after: Side | None
+    cells: Sequence[Cell] = ()
+    more: int = 0
+    effect: str = ""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Two states of a document side by side; `whole` shows axes that do not differ, too."""
+
+    export: DifferencesExport
+    reader: Reader
+    whole: bool = False
+
+    @property
+    def labels(self) -> tuple[str, str]:
+        """Labels of both."""
+        return self.export.labels
+
+    @cached_property
+    def found(self) -> DocumentDifferences:
+        """Differences of the two."""
+        return self.export.differences
+
+    @property
+    def sides(self) -> tuple[Summary, Summary]:
+        """Both in brief."""
+        return self.found.side_from, self.found.side_to
+
+    @property
+    def cells(self) -> int:
+        """Number of inputs that differ."""
+        return sum(len(axis.inputs) for axis in self.found.axes)
+
+    @property
+    def changed(self) -> int:
+        """Number of axes with an input that differs, or that one state lacks."""
+        return sum(bool(axis.inputs) or axis.change != "changed" for axis in self.found.axes)
+
+    @property
+    def axes(self) -> int:
+        """Number of axes of both."""
+        return len(self.found.axes) + self.found.same
+
+    @cached_property
+    def lost(self) -> list[DifferentAxis]:
+        """Axes that lost their gear."""
+        return [axis for axis in self.found.axes if axis.lost_its_gear]
+
+    @cached_property
+    def other(self) -> list[DifferentAxis]:
+        """Axes with another gear."""
+        return [axis for axis in self.found.axes if axis.has_another_gear and not axis.lost_its_gear]
+
+    @cached_property
+    def names(self) -> Mapping[int, str]:
+        """Names of the axes of both states by their numbers."""
+        both = (axis for document in self.export.documents for axis in document.axes)
+        return {axis.number: axis.name or str(axis.number) for axis in both}
+
+    @property
+    def common(self) -> list[Cell]:
+        """Title block and common values that differ."""
+        return input_cells(self.found.common, self.reader)
+
+    @property
+    def inputs(self) -> list[Cell]:
+        """Inputs that differ, of a document with one axis."""
+        return [cell for axis in self.found.axes for cell in input_cells(axis.inputs, self.reader)]
+
+    @property
+    def results(self) -> list[Cell]:
+        """Verdicts and figures that differ, of a document with one axis."""
+        return [cell for axis in self.found.axes for cell in answer_cells((*axis.verdicts, *axis.figures), self.reader)]
+
+    @property
+    def gears(self) -> tuple[str | None, str | None]:
+        """Gears of a document with one axis."""
+        one, other = (gear_of(document.axes[0]) if document.axes else None for document in self.export.documents)
+        return one, other
+
+    @cached_property
+    def rows(self) -> list[AxisRow]:
+        """Axes that are shown."""
+        rows = [self._row(axis) for axis in self.found.axes[:MOST_AXES]]
+        return rows + self._same(MOST_AXES - len(rows)) if self.whole else rows
+
+    @property
+    def left_out(self) -> int:
+        """Number of axes that would stand below."""
+        return (self.axes if self.whole else len(self.found.axes)) - len(self.rows)
+
+    def _row(self, axis: DifferentAxis) -> AxisRow:
+        before, after = sides = self.export.sides(axis.number)
+        cells = cells_of(axis, self.reader)
+        return AxisRow(
+            axis.number,
+            self.names[axis.number],
+            Side.of(before, self.reader),
+            Side.of(after, self.reader),
+            cells[:MOST_CELLS],
+            max(0, len(cells) - MOST_CELLS),
+            effect(axis, sides, self.reader),
+        )
+
+    def _same(self, most: int) -> list[AxisRow]:
+        differ = {axis.number for axis in self.found.axes}
+        same = [axis for axis in self.export.documents[1].axes if axis.number not in differ]
+        return [
+            AxisRow(axis.number, self.names[axis.number], side, side)
+            for axis in same[:most]
+            for side in [Side.of(axis, self.reader)]
+        ]
+
+
+def pair_of(machine: Machine, lines: Sequence[RevisionLine], wanted: Mapping[str, str]) -> tuple[str, str] | None:
+    """Labels of the states that an address compares; else of the latest revision with what is new since, or with the
+    one before. None without a revision.
+    """
+    if not lines:
+        return None
+    is_new = machine.updated > lines[0].created
+    older, newer = (lines[0].label, NOW) if is_new or len(lines) == 1 else (lines[1].label, lines[0].label)
+    before, after = (wanted.get(name, "")[:20] or label for name, label in (("from", older), ("to", newer)))
+    return written(before, lines), written(after, lines)
+
+
+def written(label: str, lines: Iterable[RevisionLine]) -> str:
+    """A label in the case in which it was given, so that lists mark it; any other as it is."""
+    key = label_key(label)
+    return key if key in STATES else next((line.label for line in lines if label_key(line.label) == key), label)
+
+
+def next_label(lines: Sequence[RevisionLine]) -> str:
+    """Label that follows the latest, where that is a letter or ends in a number; else the first letter that is free."""
+    taken = {label_key(line.label) for line in lines}
+    latest = lines[0].label if lines else ""
+    head = latest.rstrip("0123456789")
+    following = []
+    if head != latest and len(latest) < 20:
+        following = [f"{head}{int(latest[len(head) :]) + 1}"]
+    elif len(latest) == 1 and latest.upper() in ascii_uppercase[:-1]:
+        following = [chr(ord(latest) + 1)]
+    return next((label for label in (*following, *ascii_uppercase) if label_key(label) not in taken), "")
+
+
+def next_revision(lines: Sequence[RevisionLine]) -> dict[str, Any]:
+    """The blank form that saves the next revision."""
+    label = next_label(lines)
+    return {"next": label, "block": {**dict.fromkeys(BLOCK, ""), "label": label}, "fields": BLOCK, "said": ()}
