@@ -156,10 +156,12 @@ def of_machines(saved: str) -> Iterator[Hostile]:
         yield Hostile("GET", f"{machine}/differences{suffix}?from=saved&to=now")
     page = f"/machines/{'x' * 22}"
     yield Hostile("GET", f"{page}/axes/1?{LINK}")
-    for path in ("axes/1", "axes/1/save", "change"):
+    for path in ("axes/1", "axes/1/save", "change", "revisions"):
         yield Hostile("POST", f"{page}/{path}", PAIRS, FORM)
-    for path in ("change", "kinds"):
+    for path in ("change", "kinds", "revisions"):
         yield Hostile("GET", f"{page}/{path}?search={'a' * 10_000}")
+    yield Hostile("GET", f"/selections/{saved}/revisions?from={'a' * 10_000}")
+    yield Hostile("POST", f"/selections/{saved}/revisions", PAIRS, FORM)
     yield Hostile("DELETE", f"{machine}/axes/1")
     yield Hostile("DELETE", f"/api/v1/machines/{'x' * 22}")
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import msgspec
@@ -13,7 +14,7 @@ from hpn.documents import revision
 from hpn.documents.answers import AxisAnswer, AxisQuestion, answers
 from hpn.documents.axis import Axis, phases_of
 from hpn.documents.merge import Resolved, merged, resolve
-from hpn.store import AxisDraft, Machine, RevisionDraft, SavedAxis
+from hpn.store import AxisDraft, Machine, RevisionDraft, RevisionLine, SavedAxis
 from hpn.store.records import LISTS
 
 Json = dict[str, Any]
@@ -102,6 +103,36 @@ def _frozen_axis(axis: SavedAxis, common: Mapping[str, Any]) -> revision.FrozenA
         Raw(axis.application),
         Raw(whole_of(axis, common)),
         answer_in(axis.answer),
+    )
+
+
+def thawed(machine: Machine, line: RevisionLine, document: revision.Frozen) -> Machine:
+    """A document as a revision has it."""
+    items = tuple(
+        SavedAxis(
+            application=bytes(axis.application),
+            phases=0,
+            answer=columns_of(axis.answer),
+            name=axis.name,
+            quantity=axis.quantity,
+            note=axis.note,
+            ordering_code=axis.ordering_code,
+            without=_encode(axis.without).decode(),
+            number=axis.number,
+            updated=line.created,
+            updated_by=line.created_by,
+        )
+        for axis in document.axes
+    )
+    block = {name: getattr(document, name) for name in ("title", "reference", "author", "note")}
+    return replace(
+        machine,
+        **block,
+        revision=line.label,
+        updated=line.created,
+        common=json_of(document.common).decode(),
+        order=tuple(axis.number for axis in items),
+        items=items,
     )
 
 

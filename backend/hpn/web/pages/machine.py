@@ -15,18 +15,20 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
-from hpn.documents.revision import SAVED, is_label
+from hpn.catalogue import Catalogue
+from hpn.documents.revision import SAVED, decode, is_label
 from hpn.links.labels import FIELDS, TITLE_BLOCK
 from hpn.store import Machine, RevisionDraft, StoreUnavailableError
-from hpn.web.columns import revision_of
+from hpn.web.columns import revision_of, thawed
 from hpn.web.door.access import ADMIN, admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
-from hpn.web.door.pools import compute, pool_of, while_present
+from hpn.web.door.pools import PoolName, compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
 from hpn.web.form.common import BY_SYMBOL, FIRST
-from hpn.web.machines import require_seen
+from hpn.web.freezing import revision
+from hpn.web.machines import FEW_AXES, require_seen
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.machine_editing import OF_MANY, Editing, opened_common
 from hpn.web.pages.machine_rows import opened
@@ -80,6 +82,8 @@ EMPTY = TitleForm(dict.fromkeys(TITLE_BLOCK, ""))
 async def show(request: Request) -> Response:
     """A machine: counts, and its axes as the address filters and sorts them; `edit=common` opens its common values."""
     saved = await _found(request)
+    if label := request.query_params.get("revision"):
+        return await _frozen(request, saved, label)
     editing = opened_common(saved) if request.query_params.get("edit") == "common" else Editing()
     return await shown(request, saved, 200, EMPTY, editing)
 
@@ -91,8 +95,21 @@ async def shown(request: Request, saved: Machine, status: int, form: TitleForm, 
     view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params), since)
     today = await _today(request, saved)
     values = {"form": form, "today": today, "editing": editing, "may_change": may_change(request, saved)}
-    values |= next_revision(latest)
+    values |= {"line": None} | next_revision(latest)
     return await compute(request, "pages", _page, request, view, status, values)
+
+
+async def _frozen(request: Request, saved: Machine, label: str) -> Response:
+    """The page of a machine as a revision has it, which nobody changes."""
+    line, content = await revision(request, saved.id, label)
+    catalogue: Catalogue = request.app.state.catalogue
+    if line.catalogue_version != catalogue.version:
+        catalogue = await request.app.state.store.catalogue(line.catalogue_version) or catalogue
+    few: PoolName = "pages" if line.axes <= FEW_AXES else "batches"
+    machine = await compute(request, few, lambda: thawed(saved, line, decode(content)))
+    view = MachineView(machine, catalogue, replace(Chosen.of(request.query_params), revision=line.label))
+    values = {"form": EMPTY, "today": None, "editing": Editing(), "may_change": False, "line": line}
+    return await compute(request, few, _page, request, view, 200, values)
 
 
 def may_change(request: Request, saved: Machine) -> bool:

@@ -124,6 +124,7 @@ class Chosen:
     search: str = ""
     sort: str = ""
     part: int = 1
+    revision: str = ""
 
     @classmethod
     def of(cls, query: Mapping[str, str]) -> "Chosen":
@@ -228,8 +229,17 @@ class MachineView:
     since: datetime | None = None
     """Time of the latest revision."""
 
-    nothing_chosen = Chosen()
     orders = SORTINGS
+
+    @cached_property
+    def frozen(self) -> str:
+        """Label of the revision that is shown; blank for the working copy."""
+        return self.chosen.revision
+
+    @cached_property
+    def everything(self) -> Chosen:
+        """Choice of all axes."""
+        return Chosen(revision=self.frozen)
 
     @cached_property
     def path(self) -> str:
@@ -332,7 +342,7 @@ class MachineView:
 
     def choose(self, name: str, value: str) -> str:
         """Address of the axes of a filter."""
-        return Chosen().address(self.path, **{name: value}) + "#axes-heading"
+        return self.everything.address(self.path, **{name: value}) + "#axes-heading"
 
     def show(self, value: str) -> str:
         """Address of the axes of another filter in the same order."""

@@ -12,7 +12,7 @@ from starlette.responses import RedirectResponse, Response
 from hpn import ENGINE_VERSION
 from hpn.documents.revision import TODAY, RevisionBlock, decode
 from hpn.documents.summary import Summary, summary_of
-from hpn.files.export import Heading
+from hpn.files.export import ExportTitle
 from hpn.files.machine.changes import DifferencesExport
 from hpn.store import Machine, RevisionLine
 from hpn.store.records import DocumentKind
@@ -108,7 +108,7 @@ def _export(
     request: Request, machine: Machine, pair: tuple[str, str], states: tuple[State, State]
 ) -> DifferencesExport:
     link = absolute(request, f"{PLACES[machine.kind]}/{machine.id}/revisions?from={pair[0]}&to={pair[1]}")
-    heading = Heading(machine.title or "", machine.reference or "", machine.author or "")
+    heading = ExportTitle(machine.title or "", machine.reference or "", machine.author or "")
     return DifferencesExport(pair, documents_of(*states), catalogues_of(*states), link, heading, made=datetime.now(UTC))
 
 

@@ -32,7 +32,7 @@ BLOCK = {
 """Fields of the form that saves a revision."""
 
 
-class Side(NamedTuple):
+class SideShown(NamedTuple):
     """Gear of an axis in one state, and how far it is used."""
 
     gear: str | None
@@ -42,7 +42,7 @@ class Side(NamedTuple):
     text: str
 
     @classmethod
-    def of(cls, axis: FrozenAxis | None, reader: Reader) -> "Side | None":
+    def of(cls, axis: FrozenAxis | None, reader: Reader) -> "SideShown | None":
         """The same of an axis; None where the state lacks it."""
         if axis is None:
             return None
@@ -50,13 +50,13 @@ class Side(NamedTuple):
         return cls(gear_of(axis), answer.utilisation, bound_of(axis), answer.status, used(axis, reader))
 
 
-class AxisRow(NamedTuple):
+class ComparedAxis(NamedTuple):
     """An axis in both states: cells that differ, those that are left out, and what they did to its gear."""
 
     number: int
     name: str
-    before: Side | None
-    after: Side | None
+    before: SideShown | None
+    after: SideShown | None
     cells: Sequence[Cell] = ()
     more: int = 0
     effect: str = ""
@@ -138,7 +138,7 @@ class Compared:
         return one, other
 
     @cached_property
-    def rows(self) -> list[AxisRow]:
+    def rows(self) -> list[ComparedAxis]:
         """Axes that are shown."""
         rows = [self._row(axis) for axis in self.found.axes[:MOST_AXES]]
         return rows + self._same(MOST_AXES - len(rows)) if self.whole else rows
@@ -148,26 +148,26 @@ class Compared:
         """Number of axes that would stand below."""
         return (self.axes if self.whole else len(self.found.axes)) - len(self.rows)
 
-    def _row(self, axis: DifferentAxis) -> AxisRow:
+    def _row(self, axis: DifferentAxis) -> ComparedAxis:
         before, after = sides = self.export.sides(axis.number)
         cells = cells_of(axis, self.reader)
-        return AxisRow(
+        return ComparedAxis(
             axis.number,
             self.names[axis.number],
-            Side.of(before, self.reader),
-            Side.of(after, self.reader),
+            SideShown.of(before, self.reader),
+            SideShown.of(after, self.reader),
             cells[:MOST_CELLS],
             max(0, len(cells) - MOST_CELLS),
             effect(axis, sides, self.reader),
         )
 
-    def _same(self, most: int) -> list[AxisRow]:
+    def _same(self, most: int) -> list[ComparedAxis]:
         differ = {axis.number for axis in self.found.axes}
         same = [axis for axis in self.export.documents[1].axes if axis.number not in differ]
         return [
-            AxisRow(axis.number, self.names[axis.number], side, side)
+            ComparedAxis(axis.number, self.names[axis.number], side, side)
             for axis in same[:most]
-            for side in [Side.of(axis, self.reader)]
+            for side in [SideShown.of(axis, self.reader)]
         ]
 
 
