@@ -94,7 +94,7 @@ def files() -> dict[str, bytes]:
     faces = fonts.faces(TYPEFACE, texts)
     return {
         **faces,
-        "plotly-basic.min.js": PLOTLY.read_bytes(),
+        "plotly-basic.min.js": PLOTLY.read_bytes() + b"\n" + alone("names.js"),
         **{name: (SWAGGER / name).read_bytes() for name in ("swagger-ui.css", "swagger-ui-bundle.js")},
         "page.js": script(*SCRIPTS),
         "gear.js": script("form", "tools"),
