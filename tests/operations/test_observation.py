@@ -222,7 +222,7 @@ def test_operations_of_the_store_are_counted_and_its_failures(make_client: MakeC
 
     broken = make_client(database_url="postgresql://nobody@127.0.0.1:1/none", database_seconds=1)
     assert broken.get("/api/v1/selections").status_code == 503
-    assert counts(broken)["hpn_store_operations_total page failed"] == 1
+    assert counts(broken)["hpn_store_operations_total pending failed"] == 1
 
 
 @pytest.mark.anyio

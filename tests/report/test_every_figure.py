@@ -148,7 +148,10 @@ def test_every_figure_of_a_saved_page_is_the_replys(client: TestClient, saved: l
     for id, kept in saved:
         page = client.get(f"/selections/{id}").text
         rows = page_rows(page)
+        typed = (kept["application"].get("emergency_stop") or {}).get("torque_Nm") is not None
         for field, named, value in figures(kept):
+            if field == "stop_torque_Nm" and typed:
+                continue  # stands with the inputs
             if cells := rows.get(flat(named.name + named.symbol)):
                 assert agrees(number_of(cells[0]), value), (id, field, value, cells)
                 seen.add(field)

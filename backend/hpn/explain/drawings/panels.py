@@ -214,7 +214,8 @@ def _peaks(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: R
     if len(axis.numbered) > MOST_BOUNDARIES:
         return
     peaks = [_peak(panel, axis.x, stretch) for stretch in axis.numbered]
-    lines = _heights(panel, top, np.array([0.0, *(level.value for level in panel.levels)])).tolist()
+    levels = [level.value for level in panel.levels if not panel.is_beyond(level)]
+    lines = _heights(panel, top, np.array([0.0, *levels])).tolist()
     named = {_figure(value, panel, reader) for value in _ticks(panel)}
     taken = axis.x.item(0) + 1
     for k, (x, value) in enumerate(peaks):
