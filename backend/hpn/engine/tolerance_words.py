@@ -1,7 +1,7 @@
 """Verdict on a gear over the whole tolerance, in words."""
 
 from hpn.engine.candidates import Candidate, WorstCase
-from hpn.engine.checks import BY_CODE
+from hpn.engine.checks import BY_CODE, name_of
 from hpn.words.wording import N_, Quantity, Sentence
 
 HOLDS = N_("Holds over the whole tolerance: {check} at most at {percent} of its limit.")
@@ -18,10 +18,10 @@ def tolerance_of(candidate: Candidate) -> Sentence | None:
         return None
     if worst.governing_check is None or worst.governing_check not in BY_CODE:
         return Sentence(NOT_RATED)
-    check = BY_CODE[worst.governing_check].title
+    check = name_of(worst.governing_check)
     if worst.utilisation is None:
         return Sentence(FAILS_SO, {"check": check}, ("check",))
     proved = all(each.exact is True for each in candidate.checks)
     template = FAILS if worst.status == "unsuitable" else HOLDS if proved else NONE_FOUND
-    percent = Quantity(100 * worst.utilisation, "percent", 4, "up" if worst.status == "unsuitable" else "nearest")
+    percent = Quantity(100 * worst.utilisation, "percent", 4, "up")
     return Sentence(template, {"check": check, "percent": percent}, ("check",))
