@@ -194,6 +194,8 @@ def in_german(page: Page) -> None:
     """Turn a page into German."""
     reader_menu(page).click()
     page.get_by_role("button", name="Deutsch").click()
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+    page.wait_for_load_state()
 
 
 def violations(page: Page) -> list[tuple[str, list[str]]]:
