@@ -17,7 +17,7 @@ LOADED = EXAMPLE + "&FR=500&FA=200&fw=1.2"
 
 
 @dataclass(frozen=True)
-class State:
+class Screen:
     """One state of the page, and how it is looked at."""
 
     name: str
@@ -28,11 +28,11 @@ class State:
 
 
 STATES = (
-    State("answer-1440-light", "/"),
-    State("rejected-1440-light", EXAMPLE + "&gear=HPN-14A-5"),
-    State("bearing-1440-light", LOADED + "#bearing"),
-    State("german-1440-dark", "/", dark=True, language="de"),
-    State("answer-390-light", "/", width=390),
+    Screen("answer-1440-light", "/"),
+    Screen("rejected-1440-light", EXAMPLE + "&gear=HPN-14A-5"),
+    Screen("bearing-1440-light", LOADED + "#bearing"),
+    Screen("german-1440-dark", "/", dark=True, language="de"),
+    Screen("answer-390-light", "/", width=390),
 )
 
 
@@ -51,7 +51,7 @@ def main() -> None:
         browser.close()
 
 
-def _take(browser: Browser, address: str, state: State) -> None:
+def _take(browser: Browser, address: str, state: Screen) -> None:
     context = browser.new_context(
         viewport={"width": state.width, "height": 844 if state.width < 600 else 900},
         color_scheme="dark" if state.dark else "light",

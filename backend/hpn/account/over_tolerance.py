@@ -155,8 +155,9 @@ class OverTolerance:
         gear, catalogue = self.account.gear, self.account.catalogue
         found = []
         for one in self.room.deciding if self.room else ():
-            known = gear is not None and catalogue is not None
-            factor = allowed_of(self.application, gear, catalogue, one.path) if known else None  # type: ignore[arg-type]
+            factor = None
+            if gear is not None and catalogue is not None:
+                factor = allowed_of(self.application, gear, catalogue, one.path)
             found.append(DecidingLine(by_path[one.path], one.worst, factor))
         return found
 

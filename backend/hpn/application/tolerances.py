@@ -300,11 +300,11 @@ def _contradictions(application: Any, found: Mapping[Place, Interval]) -> Iterat
     names = ("load_torque_Nm", "opposing_torque_Nm")
     load, opposing = (found.get((*STOP, name)) for name in names)
     stop = application.emergency_stop
-    if (load or opposing) and stop.brake.opposing_torque_Nm is not None:
+    if (own := load or opposing) and stop.brake.opposing_torque_Nm is not None:
         high = load.high if load else stop.brake.load_torque_Nm or 0.0
         low = opposing.low if opposing else stop.brake.opposing_torque_Nm
         if low < high:
-            yield ((load or opposing).path,), _held(names[1], names[0])  # type: ignore[union-attr]
+            yield (own.path,), _held(names[1], names[0])
 
 
 def _of_phase(phase: Phase, number: int, own: Interval, found: Mapping[Place, Interval]) -> Iterator[tuple[Place, Any]]:

@@ -35,7 +35,7 @@ TABLES = (".csv", ".parquet", ".xlsx", ".arrow", ".arrows", ".feather", ".csv.gz
 
 
 class MachineError(MendableError):
-    """What can't be exported or imported; the text says why."""
+    """Export or import that can't be done; the text says why."""
 
 
 class CopiedRevision(Frozen, frozen=True):

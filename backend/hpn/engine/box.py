@@ -155,7 +155,8 @@ class Box:
 
     def _motions(self, count: int) -> tuple[Mapping[int, Any], Mapping[int, Any]]:
         courses, stopped = self.duty.courses, self.duty.stopped_loads
-        return tuple({row: each[0] for row in range(count)} if each else {} for each in (courses, stopped))  # type: ignore[return-value]
+        rows = range(count)
+        return dict.fromkeys(rows, courses[0]) if courses else {}, dict.fromkeys(rows, stopped[0]) if stopped else {}
 
     def application_at(self, point: FloatArray) -> Application:
         """The application at a point, as one would type it."""

@@ -1,4 +1,4 @@
-"""What saved documents get today: asked in the background after a change of engine or catalogue, once for each version.
+"""Today's verdicts on saved documents: asked in the background after a change of engine or catalogue, once a version.
 
 Several processes share the work: each takes some documents at a time, which no other takes meanwhile.
 """

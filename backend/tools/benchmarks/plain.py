@@ -25,7 +25,7 @@ ROUNDING = 1 + 1e-12
 """A limit that is met exactly passes in floating point (contract of the checks)."""
 
 
-class Duty(BaseModel):
+class PlainDuty(BaseModel):
     """Figures of the cycle."""
 
     average_torque_Nm: float
@@ -34,7 +34,7 @@ class Duty(BaseModel):
     maximum_output_speed_rpm: float
 
 
-class Check(BaseModel):
+class PlainCheck(BaseModel):
     """One check of one gear."""
 
     code: str
@@ -44,7 +44,7 @@ class Check(BaseModel):
     status: str
 
 
-class Reserve(BaseModel):
+class PlainReserve(BaseModel):
     """How far each driver may grow."""
 
     torque_factor: float | None
@@ -53,7 +53,7 @@ class Reserve(BaseModel):
     emergency_stop_torque_Nm: float | None
 
 
-class Candidate(BaseModel):
+class PlainCandidate(BaseModel):
     """One gear and its verdict."""
 
     designation: str
@@ -73,8 +73,8 @@ class Candidate(BaseModel):
     bearing_life_L10_h: float | None
     motor_peak_torque_Nm: float
     motor_rated_torque_Nm: float
-    reserve: Reserve
-    checks: list[Check]
+    reserve: PlainReserve
+    checks: list[PlainCheck]
 
 
 class Definition(BaseModel):
@@ -93,24 +93,24 @@ class Definition(BaseModel):
     remedy: str
 
 
-class Notice(BaseModel):
+class PlainNotice(BaseModel):
     """Notes for the reader beyond the numbers."""
 
     code: str
     text: str
 
 
-class Reply(BaseModel):
+class PlainReply(BaseModel):
     """The whole reply."""
 
     engine_version: str
     catalogue_version: str
     link: str
-    duty: Duty
+    duty: PlainDuty
     selected: str | None
-    candidates: list[Candidate]
+    candidates: list[PlainCandidate]
     check_definitions: dict[str, Definition]
-    notices: list[Notice]
+    notices: list[PlainNotice]
 
 
 class Cycle:
@@ -164,17 +164,17 @@ class Selector:
         sample = json.loads((folder / "reply.json").read_text())
         self.versions = {name: sample[name] for name in ("engine_version", "catalogue_version")}
         self.definitions = {code: Definition(**entry) for code, entry in sample["check_definitions"].items()}
-        self.notices = [Notice(**notice) for notice in sample["notices"]]
+        self.notices = [PlainNotice(**notice) for notice in sample["notices"]]
 
-    def reply(self, application: Application) -> Reply:
+    def reply(self, application: Application) -> PlainReply:
         """The reply to one application."""
         cycle, gears = Cycle(application), self.gears.allowed(application)
         candidates = self._candidates(application, cycle, gears)
         best = candidates[0]
-        return Reply(
+        return PlainReply(
             **self.versions,
             link=link_of(application),
-            duty=Duty(
+            duty=PlainDuty(
                 average_torque_Nm=cycle.T_av,
                 average_output_speed_rpm=cycle.n_av,
                 maximum_torque_Nm=cycle.T_max,
@@ -186,7 +186,7 @@ class Selector:
             notices=self.notices,
         )
 
-    def _candidates(self, application: Application, cycle: Cycle, gears: Gears) -> list[Candidate]:
+    def _candidates(self, application: Application, cycle: Cycle, gears: Gears) -> list[PlainCandidate]:
         stop = application.emergency_stop
         T_k = math.nan if stop is None or stop.torque_Nm is None else abs(stop.torque_Nm)
         demands = {
@@ -228,19 +228,21 @@ class Selector:
         }
 
     @staticmethod
-    def _checks(codes: list[str], demand: FloatArray, limit: FloatArray, used: FloatArray, u: float) -> list[Check]:
+    def _checks(
+        codes: list[str], demand: FloatArray, limit: FloatArray, used: FloatArray, u: float
+    ) -> list[PlainCheck]:
         states = ["not_rated" if math.isnan(x) else "pass" if x <= u * ROUNDING else "fail" for x in used.tolist()]
         columns = zip(codes, numbers(demand), numbers(limit), numbers(used), states, strict=True)
         return [
-            Check(code=code, demand=demanded, limit=bound, utilisation=share, status=status)
+            PlainCheck(code=code, demand=demanded, limit=bound, utilisation=share, status=status)
             for code, demanded, bound, share, status in columns
         ]
 
-    def _candidate(self, row: dict[str, Any], checks: list[Check], of: dict[str, Any]) -> Candidate:
+    def _candidate(self, row: dict[str, Any], checks: list[PlainCheck], of: dict[str, Any]) -> PlainCandidate:
         failed = sum(check.status == "fail" for check in checks)
         unrated = not failed and any(check.status == "not_rated" for check in checks)
         governing = None if unrated else max(checks, key=lambda check: check.utilisation or 0.0)
-        return Candidate(
+        return PlainCandidate(
             designation=row["designation"],
             size=row["size"],
             ratio=row["ratio"],
@@ -258,7 +260,7 @@ class Selector:
             bearing_life_L10_h=None,
             motor_peak_torque_Nm=of["motor_peak_torque_Nm"],
             motor_rated_torque_Nm=of["motor_rated_torque_Nm"],
-            reserve=Reserve(
+            reserve=PlainReserve(
                 torque_factor=of["torque_factor"],
                 speed_factor=of["speed_factor"],
                 load_factor=None,
@@ -267,7 +269,7 @@ class Selector:
             checks=checks,
         )
 
-    def _reason(self, row: dict[str, Any], governing: Check | None, failed: int) -> str:
+    def _reason(self, row: dict[str, Any], governing: PlainCheck | None, failed: int) -> str:
         if governing is None or governing.utilisation is None:
             return f"Not rated: figures of HPN-{row['size']} that the checks need are not in this catalogue’s source."
         title, percent = self.definitions[governing.code].title, f"{100 * governing.utilisation:.1f} %"
@@ -283,7 +285,7 @@ def numbers(values: FloatArray) -> list[float | None]:
     return [value if math.isfinite(value) else None for value in values.tolist()]
 
 
-def _order(candidate: Candidate, gears: Gears, g: int) -> tuple[float, ...]:
+def _order(candidate: PlainCandidate, gears: Gears, g: int) -> tuple[float, ...]:
     """Suitable gears by weight, then unsuitable ones by utilisation, then unrated ones in catalogue order."""
     used, ratio = candidate.utilisation or 0.0, float(candidate.ratio)
     life = candidate.life_L10_h if candidate.life_L10_h is not None else -math.inf
@@ -310,8 +312,8 @@ def create_app(folder: Path) -> FastAPI:
     """The service."""
     app, selector = FastAPI(), Selector(folder)
 
-    @app.post("/api/v1/select", response_model=Reply)
-    async def select(application: Application) -> Reply:
+    @app.post("/api/v1/select", response_model=PlainReply)
+    async def select(application: Application) -> PlainReply:
         return selector.reply(application)
 
     return app

@@ -19,7 +19,7 @@ SOUND, VULNERABLE, NOT_ASKED = 0, 1, 3
 LOCKS = (locks.RUN_LOCK, *locks.DEVELOPMENT_LOCKS)
 
 
-class Answer(NamedTuple):
+class Audit(NamedTuple):
     """Findings on some packages."""
 
     packages: int
@@ -27,7 +27,7 @@ class Answer(NamedTuple):
     found: Sequence[str]
 
 
-def of_python(packages: Sequence[Package]) -> Answer:
+def of_python(packages: Sequence[Package]) -> Audit:
     """Have pip-audit ask for every package, those for other versions of Python and other systems included."""
     flags = ["--disable-pip", "--require-hashes", "--progress-spinner=off", "--format=json"]
     unasked, found = [], []
@@ -40,7 +40,7 @@ def of_python(packages: Sequence[Package]) -> Answer:
             unasked += [package["skip_reason"]] if "skip_reason" in package else []
             found += [_flaw(package, flaw) for flaw in package.get("vulns", ())]
         unasked += [] if "dependencies" in said else [said["error"]] * len(some)
-    return Answer(len(packages), unasked, found)
+    return Audit(len(packages), unasked, found)
 
 
 def _one_version_of_each(packages: Sequence[Package]) -> Iterator[Sequence[Package]]:
@@ -56,17 +56,17 @@ def _flaw(package: dict[str, Any], flaw: dict[str, Any]) -> str:
     return f"{package['name']} {package['version']}: {' '.join([flaw['id'], *flaw['aliases']])}, mended in {mended}"
 
 
-def of_page() -> Answer:
+def of_page() -> Audit:
     """Have npm ask for every package of the page's lock."""
     packages = locks.page()
     said = _json(["npm", "audit", "--json"], locks.PAGE)
     if "vulnerabilities" not in said:
-        return Answer(len(packages), [said.get("message") or said["error"]] * len(packages), [])
+        return Audit(len(packages), [said.get("message") or said["error"]] * len(packages), [])
     found = [
         f"{name} {flaw['range']}: {', '.join(via if isinstance(via, str) else via['title'] for via in flaw['via'])}"
         for name, flaw in said["vulnerabilities"].items()
     ]
-    return Answer(len(packages), [], found)
+    return Audit(len(packages), [], found)
 
 
 def _json(command: Sequence[str], folder: Path = locks.ROOT) -> dict[str, Any]:
@@ -79,7 +79,7 @@ def _json(command: Sequence[str], folder: Path = locks.ROOT) -> dict[str, Any]:
     return said
 
 
-def report(answers: dict[str, Answer]) -> int:
+def report(answers: dict[str, Audit]) -> int:
     """Say what was learnt, and give the exit code."""
     for name, (packages, unasked, found) in answers.items():
         print(f"{name}: {packages} packages, {len(unasked)} could not be looked up, {len(found)} known vulnerabilities")

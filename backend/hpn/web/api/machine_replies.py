@@ -87,7 +87,7 @@ class MachineReply(LineReply, frozen=True):
 
 
 class MachineToday(Reply, frozen=True):
-    """What a document gets by today's engine and catalogue."""
+    """Verdict on a document by today's engine and catalogue."""
 
     verdict_changed: Annotated[int, Field(description="Number of axes with another gear or verdict.")]
     axes: Annotated[list[int], Field(max_length=100, description="Numbers of the first 100 of them.")]

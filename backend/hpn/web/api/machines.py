@@ -7,11 +7,12 @@ from typing import Annotated, Any, NamedTuple
 
 import msgspec
 from fastapi import APIRouter, Query
-from pydantic import Field
+from pydantic import Field, ValidationError
 from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn import ENGINE_VERSION
+from hpn.application import InputError
 from hpn.catalogue import Catalogue
 from hpn.documents.axis import MOST_AXES, MOST_BYTES, MOST_PHASES
 from hpn.documents.common import Common
@@ -265,14 +266,14 @@ def _change(machine: Machine, patch: MachinePatch, catalogue: Catalogue, by: str
         return made
     try:
         common = Common.model_validate(patched(common_of(machine), patch.common) or {}).sent
-    except ValueError as error:
+    except (ValidationError, InputError) as error:
         raise _below_common(error) from None
     values["common"] = msgspec.json.encode(common).decode()
     return replace(made, answered=answered(machine, common, catalogue))
 
 
-def _below_common(error: ValueError) -> Problem:
-    problem = Problem.of(error)  # type: ignore[arg-type]
+def _below_common(error: ValidationError | InputError) -> Problem:
+    problem = Problem.of(error)
     problem.errors = [fault._replace(location=("common", *fault.location)) for fault in problem.errors]
     return problem
 

@@ -207,7 +207,7 @@ class SummaryReply(Reply, frozen=True):
 
 
 class SelectionToday(Reply, frozen=True):
-    """What a saved selection gets by today's engine and catalogue."""
+    """Verdict on a saved selection by today's engine and catalogue."""
 
     selected: Annotated[str | None, Field(description="Designation of the gear selected today, or null.")]
     status: Annotated[

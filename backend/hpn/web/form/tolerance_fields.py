@@ -50,7 +50,7 @@ _SECOND_SIGN = Pattern(r"(?<=[^eE\s/;])[\s/;]*([+-])", _LONGEST)
 _AMOUNT = Pattern(r"(.*?)\s*abs\.?", _LONGEST)
 _DEGREES = Pattern(r"(.*?)\s*(K|°\s?C|°\s?F)", _LONGEST)
 ABSOLUTE, KELVIN = "abs.", "K"
-"""What stands behind an amount of a pure number, which would else be percent, and of a temperature."""
+"""Endings of an amount of a pure number, which would else be percent, and of a temperature."""
 
 
 def input_of(name: str) -> str:
