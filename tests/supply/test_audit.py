@@ -11,7 +11,7 @@ from threading import Thread
 from typing import Any
 
 from tools.supply import locks
-from tools.supply.audit import Answer, report
+from tools.supply.audit import Audit, report
 
 LOCK = locks.ROOT / "requirements-build.lock"
 PACKAGES = locks.python(LOCK)
@@ -33,7 +33,7 @@ OF_NPM = {
 
 
 def test_nothing_known_is_sound() -> None:
-    assert report({"Python": Answer(2, [], []), "npm": Answer(1, [], [])}) == 0
+    assert report({"Python": Audit(2, [], []), "npm": Audit(1, [], [])}) == 0
 
 
 def test_known_vulnerabilities_are_named() -> None:

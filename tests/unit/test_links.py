@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from hpn.application import Application
 from hpn.links import symbols
+from hpn.links.symbol import MOTION_PATH
 from hpn.links.writer import to_link
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
@@ -229,9 +230,7 @@ def test_every_field_of_the_application_has_a_symbol() -> None:
         return [annotation, *parts] if hasattr(annotation, "model_fields") else parts
 
     phases = {("duty_cycle", "phases", *symbol.path) for symbol in symbols.PHASE_SYMBOLS}
-    moves = {
-        (*symbols.MOTION_PATH, "moves", symbol.path[-1]) for symbol in (*symbols.TURN_SYMBOLS, *symbols.STROKE_SYMBOLS)
-    }
+    moves = {(*MOTION_PATH, "moves", symbol.path[-1]) for symbol in (*symbols.TURN_SYMBOLS, *symbols.STROKE_SYMBOLS)}
     single = {path for path in leaves(Application) if path[0] != "tolerances"}  # those stand for a field each
     assert single == phases | moves | set(symbols.BY_PATH)
 

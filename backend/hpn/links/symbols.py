@@ -4,67 +4,22 @@ Form, link writer and link reader are loops over it. An input's name and sign st
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 from hpn.application.phase import Phase
-from hpn.catalogue import Catalogue
 from hpn.documents.common import COMMON
 from hpn.engine.notice import AREAS
 from hpn.links import labels
 from hpn.links.rows import EVEN, OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
+from hpn.links.symbol import MOTION_PATH, Symbol
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
 from hpn.tables.inputs import NAME, PHASE, Input, Inputs
 from hpn.tables.numbers import Kind
-from hpn.words.quantities import CANDIDATE, INPUTS, QUANTITIES
+from hpn.words.quantities import CANDIDATE
 from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
-from hpn.words.units import suffix_of
-from hpn.words.wording import N_, Named
-
-
-@dataclass(frozen=True, slots=True)
-class Symbol:
-    """A query name, the field of the application that it stands for, and what the form says beside it.
-
-    A number `by_size` is one for all sizes, or one for each of some, repeated in links. `choices` are the codes of a
-    text, the first being what counts where none is given. `offered` is a figure of the gears whose values are offered
-    while typing, or such values themselves. `supplied` names the table of the catalogue without which a choice is not
-    offered.
-    """
-
-    name: str
-    path: tuple[str, ...]
-    kind: Kind = "number"
-    many: bool = False
-    choices: Mapping[str, str] = field(default_factory=dict)
-    supplied: Mapping[str, str] = field(default_factory=dict)
-    placeholder: str = ""
-    hint: str = ""
-    offered: str | tuple[float, ...] = ()
-
-    @property
-    def place(self) -> str:
-        """Its place as `hpn.words.quantities` names it."""
-        if self.path[:2] == MOTION_PATH:
-            return ".".join(self.path[1:])
-        if self.path[0] == "body":
-            return ".".join(self.path)
-        return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
-
-    def is_offered(self, choice: str, catalogue: Catalogue) -> bool:
-        """True for a choice that is of use with a catalogue; a link that asks for another is read all the same."""
-        return choice not in self.supplied or bool(getattr(catalogue, self.supplied[choice]))
-
-    @property
-    def named(self) -> Named:
-        """Its name and its sign."""
-        return QUANTITIES[self.place]
-
-    @property
-    def unit(self) -> str:
-        """Suffix of its unit, blank for a pure number or a text."""
-        return suffix_of(self.path[-1])
+from hpn.words.wording import N_
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,8 +214,6 @@ SYMBOLS = (
     Symbol("md", ("requirements", "motor", "designation"), "text"),
 )
 """Everything but phases and motion, in the order of a canonical link: one part of an application at a time."""
-
-MOTION_PATH = ("duty_cycle", "motion")
 
 
 def _of_mechanism(name: str, field: str, kind: Kind = "number", hint: str = "") -> Symbol:

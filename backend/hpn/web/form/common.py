@@ -6,7 +6,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from hpn.documents.common import COMMON, Common
-from hpn.links.symbols import BY_PATH, BY_SIZE, Symbol
+from hpn.links.symbol import Symbol
+from hpn.links.symbols import BY_PATH, BY_SIZE
 from hpn.tables.numbers import WAS, WRITTEN, read_value
 from hpn.web.form.form import Form, for_reader
 from hpn.web.form.given import FieldProblem, Given

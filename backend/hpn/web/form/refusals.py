@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from hpn.application.tolerances import WITH_VALUES
-from hpn.links.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS, Symbol
+from hpn.links.symbol import Symbol
+from hpn.links.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS
 from hpn.physics.motion.refusals import REFUSALS
 from hpn.words.terms import PROFILES
 from hpn.words.units import suffix_of

@@ -13,7 +13,8 @@ from hpn.documents.axis import Json
 from hpn.documents.common import COMMON, flat
 from hpn.documents.gears import GearOrder, Placed, gears_of
 from hpn.engine.checks import allowed
-from hpn.links.symbols import BY_PATH, Symbol
+from hpn.links.symbol import Symbol
+from hpn.links.symbols import BY_PATH
 from hpn.store import Machine, SavedAxis
 from hpn.web.columns import common_of, own_of, without_of
 from hpn.words.wording import N_
