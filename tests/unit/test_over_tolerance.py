@@ -164,6 +164,43 @@ def test_what_is_printed_of_a_remedy_holds(catalogue: Catalogue) -> None:
     assert not holds(with_tolerance(WIDE, line.given.path, 16.9 / 20), gear, catalogue)
 
 
+SAMPLED = [
+    ((-65, -22, -53), 22, 35),
+    ((54, 60, 19, 44, -3), 18, 33),
+    ((-6, 33, -15), 24, 32),
+    ((30, 26, -10), 21, 21),
+    ((25, 45, -16), 18, 28),
+]
+"""Torques in Nm, position error in arcmin and tolerance in Nm where a few samples miss what all of them show."""
+
+
+@pytest.mark.parametrize(("torques", "error", "tolerance"), SAMPLED)
+def test_a_smaller_tolerance_holds_at_every_sample(
+    torques: tuple[float, ...], error: float, tolerance: float, catalogue: Catalogue
+) -> None:
+    """Torques that change their sign move the position error by the backlash at once, and nothing proves where."""
+    asked = cycle(*(phase(torque, 100) for torque in torques), requirements={"position_error_arcmin": error})
+    application = Application.model_validate(asked | {"tolerances": {"torque_Nm": {"absolute": tolerance}}})
+    over = account(application, catalogue)
+    assert over.room is not None and not over.room.holds and not over.room.exact
+
+    gear, path = over.account.candidate.designation, "torque_Nm"
+    known = catalogue.by_designation[gear]
+    for factor in (over.room.growth, allowed_of(application, known, catalogue, path)):
+        assert factor is not None and 0 < factor < 1
+        assert holds(with_tolerance(application, path, factor), gear, catalogue)
+
+
+def test_growth_beyond_the_tolerances_holds_at_every_sample(catalogue: Catalogue) -> None:
+    asked = cycle(phase(-65, 100), phase(-22, 100), phase(-53, 100), requirements={"position_error_arcmin": 22})
+    application = Application.model_validate(asked | {"tolerances": {"torque_Nm": {"absolute": 20}}})
+    room = account(application, catalogue).room
+
+    assert room is not None and room.holds and room.growth is not None and 1 <= room.growth < 35 / 20
+    gear = judge(application, catalogue).selection(with_room=False).candidates[0].designation
+    assert holds(with_tolerance(application, "torque_Nm", room.growth), gear, catalogue)
+
+
 def test_scaled_tolerances_never_grow_by_rounding() -> None:
     given = Tolerance.model_validate({"minus": {"absolute": 0.1}, "plus": {"percent": 5}})
 

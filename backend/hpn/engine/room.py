@@ -6,6 +6,7 @@ Also the share of points of the box at which it fails, by samples, with an upper
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated, Any
 
 import msgspec
@@ -20,7 +21,7 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.allowed import with_listed_motor
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, Evaluation, evaluate, judged_by
-from hpn.engine.members import SAMPLES, Members, members_of
+from hpn.engine.members import SAMPLES, Members, members_of, moving_of
 from hpn.engine.tolerance import Found, chunks_of, worst_bound, worst_cases
 from hpn.physics.equations import ROUNDING
 from hpn.words.reply import Reply
@@ -30,8 +31,12 @@ CLOSE = 1e-9
 """Relative width in which the factor of growth is known."""
 
 MOST_STEPS = 60
+
+CLOSE_BY_SAMPLES, FEW_STEPS = 1e-3, 8
+"""The same by all samples, which take long: a factor is not shown closer."""
+
 FEW_SAMPLES = 64
-"""Points that are looked at for growth and for the tolerances that decide, where nothing is proved."""
+"""Points by which growth is sought where nothing is proved; what is found holds at all samples."""
 
 CONFIDENCE = 0.95
 
@@ -122,7 +127,8 @@ def room_of(
     (whole,), judged = alone.worst([intervals], SAMPLES)
     holds, worst = bool(judged.verdict.item(0, 0) == SUITABLE), judged.utilisation.item(0, 0)
     governing = judged.governing.item(0, 0)
-    alternatives = alone.worst(without)[1].utilisation[:, 0] if without else np.empty(0)
+    samples_of_each = FEW_SAMPLES if moving_of(intervals) else SAMPLES  # a motion's samples take long
+    alternatives = alone.worst(without, samples_of_each)[1].utilisation[:, 0] if without else np.empty(0)
     box, point = whole.points[whole.at.item(governing, 0)]
     case = box.application_at(point)
     deciding = [
@@ -192,11 +198,11 @@ def _growth(alone: _Alone, intervals: Sequence[Interval], holds: bool, path: str
     if not math.isfinite(most):
         return None
 
-    def excess(factor: float) -> float:
+    def excess(factor: float, samples: int = FEW_SAMPLES) -> float:
         """Largest utilisation over its bound less 1; infinite where a check has no number."""
         try:
             changed = [one.grown(factor) if grows else one for one, grows in zip(intervals, growing, strict=True)]
-            _, judged = alone.worst([changed])
+            _, judged = alone.worst([changed], samples)
         except InputError:
             return math.inf
         if judged.verdict.item(0, 0) == SUITABLE:
@@ -204,8 +210,18 @@ def _growth(alone: _Alone, intervals: Sequence[Interval], holds: bool, path: str
         used = np.where(judged.asked[:, :1], judged.used, 0.0) / judged.bound
         return max(float(used.max()) - 1, CLOSE) if np.isfinite(used).all() else math.inf
 
-    low, high = (1.0, 2.0) if holds else (0.0, 1.0)
-    top = most * (1 - CLOSE)
+    least, top = 1.0 if holds else 0.0, most * (1 - CLOSE)
+    factor = _largest(excess, least, 2.0 if holds else 1.0, top if holds else min(top, 1.0))
+    thorough = partial(excess, samples=SAMPLES)
+    above = thorough(factor)
+    if above > 0:  # at one of the samples that are not among the few
+        at_least = thorough(least)
+        return 0.0 if at_least > 0 else _zero(thorough, least, factor, at_least, above, CLOSE_BY_SAMPLES, FEW_STEPS)
+    return most if holds and factor == top else factor
+
+
+def _largest(excess: Callable[[float], float], low: float, high: float, top: float) -> float:
+    """Largest factor up to `top` at which nothing exceeds its bound; 0 where even the lowest does."""
     at_low = excess(low)
     if at_low > 0:
         return 0.0
@@ -213,23 +229,30 @@ def _growth(alone: _Alone, intervals: Sequence[Interval], holds: bool, path: str
         high = min(high, top)
         at_high = excess(high)
         if at_high > 0:
-            break
-        if high == top or not holds:  # a sample fails that is not among the few
-            return most if holds else high
+            return _zero(excess, low, high, at_low, at_high, CLOSE, MOST_STEPS)
+        if high == top:
+            return top
         low, at_low, high = high, at_high, 4 * high
-    return _zero(excess, low, high, at_low, at_high)
 
 
-def _zero(excess: Callable[[float], float], low: float, high: float, at_low: float, at_high: float) -> float:
+def _zero(
+    excess: Callable[[float], float],
+    low: float,
+    high: float,
+    at_low: float,
+    at_high: float,
+    close: float,
+    most_steps: int,
+) -> float:
     """Largest factor at which nothing exceeds its bound: regula falsi (Illinois), bisection without a number."""
     kept = 0
-    for _ in range(MOST_STEPS):
-        if high - low <= CLOSE * high:
+    for _ in range(most_steps):
+        if high - low <= close * high:
             break
         middle = (low + high) / 2
         if math.isfinite(at_high) and at_low < 0:
             middle = high - at_high * (high - low) / (at_high - at_low)
-            room = CLOSE * high / 4
+            room = close * high / 4
             middle = min(max(middle, low + room), high - room)
         at_middle = excess(middle)
         if at_middle <= 0:
