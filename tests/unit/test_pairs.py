@@ -16,6 +16,7 @@ from starlette.testclient import TestClient
 from hpn.application import Application, InputError, MotorEntry, Pairing
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.motors import with_figures
+from hpn.engine.notice import notice
 from hpn.engine.pairs import Pairs, pairs_of, table_of
 from hpn.engine.selection import Selection, select
 from hpn.web.app import create_app
@@ -231,6 +232,12 @@ def test_motors_that_no_ratio_can_save_are_those_above_their_rated_torque_at_eve
     assert lost, "a motion that asks nothing of a motor shows nothing"
     rate = float(notices["no_ratio_for_motor"].values["rate_kW_per_s"]) * 1000
     assert rate == pytest.approx(2 * (math.sqrt(A * C) + B), rel=2e-2)
+
+
+def test_what_a_motor_needs_at_least_is_rounded_up() -> None:
+    told = notice("no_ratio_for_motor", names="M", rate_kW_per_s=1.23412)
+
+    assert "at least 1.235\u202fkW/s" in told.text
 
 
 # --- What is asked ----------------------------------------------------------------------------------------------------

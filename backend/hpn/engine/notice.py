@@ -249,8 +249,11 @@ def _sentence(template: str, values: Mapping[str, Mixed]) -> Sentence:
 
 
 def _told(name: str) -> tuple[str, int, Rounding]:
-    """Unit, digits and rounding of a value; what is to be set as a limit is rounded down."""
-    return suffix_of(name), DIGITS[suffix_of(name)], "down" if name in ("limit_Nm", "share_percent") else "nearest"
+    """Unit, digits and rounding of a value; a limit to be set is rounded down, what is needed at least up."""
+    return suffix_of(name), DIGITS[suffix_of(name)], _ROUNDING.get(name, "nearest")
+
+
+_ROUNDING: Mapping[str, Rounding] = {"limit_Nm": "down", "share_percent": "down", "rate_kW_per_s": "up"}
 
 
 def notice(code: str, **values: Mixed) -> Notice:
