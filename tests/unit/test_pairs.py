@@ -237,7 +237,7 @@ def test_motors_that_no_ratio_can_save_are_those_above_their_rated_torque_at_eve
 def test_what_a_motor_needs_at_least_is_rounded_up() -> None:
     told = notice("no_ratio_for_motor", names="M", rate_kW_per_s=1.23412)
 
-    assert "at least 1.235\u202fkW/s" in told.text
+    assert "M² / J_m of at least 1.235" in told.text
 
 
 # --- What is asked ----------------------------------------------------------------------------------------------------
