@@ -48,6 +48,26 @@ def test_common_values_open_in_place_and_say_their_effect_while_they_are_typed(v
     page.go_back()
 
 
+@pytest.mark.parametrize("place", ["machine", "revisions", "list"])
+def test_a_phone_has_room_for_a_utilisation_far_beyond_every_gear(visitor: Visitor, server: str, place: str) -> None:
+    phases = [{"torque_Nm": 9000, "speed_rpm": 100, "duration_s": 1}]
+    application = {"duty_cycle": {"phases": phases}, "requirements": {"life_h": 20000}}
+    draft = {"title": "Press of a far utilisation", "application": application}
+    httpx.post(f"{server}/api/v1/selections", json=draft, trust_env=False).raise_for_status()
+    saved = httpx.post(
+        f"{server}/api/v1/machines", json={"axes": [{"application": application}]}, trust_env=False
+    ).json()
+    httpx.post(f"{server}/api/v1{saved['url']}/revisions", json={"label": "A"}, trust_env=False).raise_for_status()
+    addresses = {"machine": saved["url"], "revisions": f"{saved['url']}/revisions?from=A&to=now&show=all"}
+    page = visitor.open(str(addresses.get(place, "/selections?search=far")), 390, touch=True)
+
+    share = page.locator(".axes .percent, .saved-list .percent").first
+    assert len(share.inner_text()) >= len("1 000 000 %")
+    cell = share.locator("xpath=ancestor::td")
+    assert cell.evaluate("cell => cell.scrollWidth <= cell.clientWidth")
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+
+
 @pytest.mark.parametrize("dark", [False, True])
 def test_a_phone_shows_every_axis_and_its_marks(visitor: Visitor, machine: str, dark: bool) -> None:
     page = visitor.open(machine, 390, dark=dark, touch=True)

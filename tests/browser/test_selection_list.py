@@ -3,6 +3,7 @@
 import re
 
 import httpx
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.conftest import Visitor, in_german
@@ -66,6 +67,15 @@ def test_two_are_marked_renamed_and_compared(visitor: Visitor, server: str) -> N
 
     expect(page.get_by_role("heading", level=1)).to_have_text("Two selections side by side")
     expect(page.get_by_text("None: both have the same input.")).to_be_visible()
+
+
+@pytest.mark.parametrize("width", [1440, 390])
+def test_the_box_of_another_verdict_stands_beside_its_words(visitor: Visitor, width: int) -> None:
+    page = visitor.open("/selections", width)
+
+    box = page.get_by_role("checkbox", name="other verdict today").bounding_box()
+
+    assert box is not None and box["width"] <= 24
 
 
 SIGN_AND_LIMIT = """cells => cells.map(cell =>

@@ -46,6 +46,27 @@ def row(page: str, name: str) -> str:
     return text_of(found)
 
 
+def test_the_working_copy_leads_to_its_files(client: TestClient, machine: str) -> None:
+    page = client.get(machine).text
+
+    for file in ("report.pdf", "gears.xlsx"):
+        assert f'href="/api/v1{machine}/{file}"' in page
+        assert client.get(f"/api/v1{machine}/{file}").status_code == 200
+
+
+def test_common_tolerances_stand_among_the_values_of_every_axis(client: TestClient) -> None:
+    tolerances = {
+        "torque_Nm": {"percent": 5},
+        "output_load.radial_N": {"minus": {"absolute": 0}, "plus": {"absolute": 9}},
+    }
+    place = client.post("/api/v1/machines", json={**MACHINE, "common": {"tolerances": tolerances}}).json()["url"]
+
+    shown = text_of(client.get(place).text.partition('id="every-axis"')[2].partition("</div>")[0])
+
+    assert "±5 %" in shown and "+9 N −0 N" in shown and "Radial" in shown
+    assert "nothing in common" not in shown
+
+
 def test_rows_show_own_values_quantity_and_gear_and_the_head_counts_gears(client: TestClient, machine: str) -> None:
     """Quantities times the weights of the catalogue: the page and the engine asked axis by axis agree."""
     page = client.get(machine).text

@@ -48,6 +48,22 @@ def test_the_comparison_has_the_cells_and_figures_that_rest_gives(client: TestCl
         assert link.replace("&", "&amp;") in page and client.get(link).status_code == 200
 
 
+def test_the_head_of_a_comparison_says_the_largest_utilisation_as_its_axis_does(client: TestClient) -> None:
+    """Of T_k = 204.5 Nm on HPN-20A-5 that is 204.5 / 256, which rounds to the user's u and is below it."""
+    stop = worked_example(emergency_stop={"torque_Nm": 204.5}, requirements={"ratios": [5]})
+    axes = [{"name": "Infeed belt", "application": stop}]
+    content = {"axes": axes, "common": {"requirements": {"utilisation": 0.8}}}
+    place = str(client.post("/api/v1/machines", json=content).json()["url"])
+    assert client.post(f"/api/v1{place}/revisions", json={"label": "A"}).status_code == 201
+    change(client, place, 1, {"quantity": 7})
+
+    page = client.get(f"{place}/revisions").text
+
+    assert "79.9 %" in row(client.get(place).text, "Infeed belt")
+    assert "Largest utilisation 79.9 % → 79.9 % " in text_of(page)
+    assert re.search(r"Weight [\d.]+ kg → [\d.]+ kg", text_of(page))
+
+
 def test_the_next_revision_is_saved_from_the_page_and_a_taken_label_offers_another(
     client: TestClient, machine: str
 ) -> None:

@@ -1,6 +1,7 @@
 """Every page, file and REST address of what each earlier version has saved still opens, and shows what was saved."""
 
 import json
+import re
 import sqlite3
 from collections.abc import Iterator
 from html import unescape
@@ -137,6 +138,14 @@ def test_pages_show_the_saved_answer(client: TestClient, version: str, saved: di
                 assert name in candidate or Reader(language).text(CANDIDATE[name].name) not in page
         if number < 2 or version in WHOLE or soak:
             assert line["designation"].rpartition("-")[0] in got(client, f"{place}/copy", second).text
+
+
+def test_a_difference_of_today_reads_otherwise_than_what_was_saved(client: TestClient, saved: dict[str, Json]) -> None:
+    for number, id in enumerate(saved):
+        page = got(client, f"/selections/{id}", LANGUAGES[number % 2]).text
+        for row in re.findall(r'<tr(?: class="changed-verdict")?>\s*<td class="gear">.*?</tr>', page, re.DOTALL):
+            before, after = re.findall(r"<td>(.*?)</td>", row, re.DOTALL)
+            assert before != after, row
 
 
 def test_files_hold_the_saved_answer(client: TestClient, version: str, saved: dict[str, Json], soak: bool) -> None:

@@ -148,7 +148,10 @@ def test_machines_and_selections_are_listed_apart_and_together(client: TestClien
 
     assert ids("") == [machine] and ids("?kind=selection") == [selection]
     assert ids("?kind=all") == [selection, machine]
-    assert [line["id"] for line in client.get("/api/v1/selections").json()["selections"]] == [selection]
+    (alone,) = client.get("/api/v1/selections").json()["selections"]
+    assert alone["id"] == selection
+    listed = client.get(f"{ADDRESS}?kind=selection").json()["machines"]
+    assert [line["utilisation"] for line in listed] == [alone["utilisation"]] != [None]
     assert read(client, f"{ADDRESS}/{selection}")["kind"] == "selection"
     assert client.get(f"/api/v1/selections/{machine}").status_code == 404
 

@@ -75,7 +75,9 @@ class LineReply(Reply, frozen=True):
     updated: Moment
     saved: Annotated[str | None, Field(description="When it was saved; null while nobody has.")]
     counts: Annotated[CountsReply, Field(description="Numbers of axes.")]
-    utilisation: Annotated[float | None, Field(description="Largest utilisation of a suitable gear.")]
+    utilisation: Annotated[
+        float | None, Field(description="Largest utilisation of a suitable gear; of a selection that of its gear.")
+    ]
 
 
 class MachineReply(LineReply, frozen=True):
@@ -176,7 +178,7 @@ def line(found: DocumentLine, kind: type[L] = LineReply, **more: Any) -> L:  # t
         updated=moment(found.updated),
         saved=None if found.saved is None else moment(found.saved),
         counts=CountsReply(found.axes, found.suitable, found.unsuitable, found.open),
-        utilisation=found.utilisation if found.kind == "machine" else None,
+        utilisation=found.utilisation,
         **more,
     )
 

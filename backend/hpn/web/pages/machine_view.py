@@ -7,10 +7,11 @@ from functools import cached_property
 from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
+from hpn.account.over_tolerance import ToleranceLine, line_of
 from hpn.account.readings import Life, life_of
 from hpn.catalogue import Catalogue
 from hpn.documents.axis import Json
-from hpn.documents.common import COMMON, flat
+from hpn.documents.common import COMMON, Common, flat
 from hpn.documents.gears import GearOrder, Placed, gears_of
 from hpn.engine.checks import allowed
 from hpn.links.symbol import Symbol
@@ -324,6 +325,11 @@ class MachineView:
     def values(self) -> list[FieldValue]:
         """Common values."""
         return common_values(self.common)
+
+    @cached_property
+    def tolerances(self) -> list[ToleranceLine]:
+        """Common tolerances."""
+        return [line_of(path, each) for path, each in (Common.model_validate(self.common).tolerances or {}).items()]
 
     def is_changed(self, row: MachineRow) -> bool:
         """True for an axis that was changed after the latest revision."""

@@ -138,6 +138,15 @@ class Compared:
         return one, other
 
     @cached_property
+    def largest(self) -> tuple[str | None, str | None]:
+        """Largest utilisation of a suitable gear in both, as the axis itself shows it; None without such a gear."""
+        one, other = (
+            next((used(axis, self.reader) for axis in document.axes if axis.number == side.utilisation_axis), None)
+            for document, side in zip(self.export.documents, self.sides, strict=True)
+        )
+        return one, other
+
+    @cached_property
     def rows(self) -> list[ComparedAxis]:
         """Axes that are shown."""
         rows = [self._row(axis) for axis in self.found.axes[:MOST_AXES]]

@@ -106,7 +106,7 @@ class ChangedField:
     saved: str
     today: str
     worded: bool = False
-    """True for a sentence about a check, or a notice, that only reads otherwise."""
+    """True for a sentence that only reads otherwise: about a check, a notice, why a gear does not fit."""
 
 
 def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[str, Any]:
@@ -222,6 +222,9 @@ def _line(difference: Difference, reopened: Reopened) -> ChangedField:
         _text(value, difference, selection, reopened, unit)
         for value, selection in zip(given, (reopened.selection, reopened.today), strict=True)
     )
+    worded = difference.change == "changed" and _is_wording(difference, reopened)
+    if saved == today and all(isinstance(value, str) for value in given):  # told alike today, so as each was written
+        worded, (saved, today) = True, given
     return ChangedField(
         candidate=difference.candidate,
         check=titles.get(difference.check or "", difference.check or ""),
@@ -231,7 +234,7 @@ def _line(difference: Difference, reopened: Reopened) -> ChangedField:
         verdict=difference.kind == "verdict",
         saved=saved,
         today=today,
-        worded=difference.change == "changed" and _is_wording(difference, reopened),
+        worded=worded,
     )
 
 
