@@ -113,6 +113,17 @@ def test_a_new_catalogue_says_what_gets_another_verdict(client: TestClient, late
         assert sum(asked) == 5  # three axes, two selections
 
 
+def test_an_axis_that_is_ordered_keeps_its_verdict_where_another_gear_is_selected(
+    client: TestClient, later: Later
+) -> None:
+    """HPN-20A-5 was selected before and fails today; ordered is HPN-32A-5, which both catalogues rate alike."""
+    axes = [{"application": NEAR, "ordering_code": code} for code in ("HPN-32A-5-J6", "HPN-20A-5-J6", None)]
+    client.post("/api/v1/machines", json={"title": "Ordered", "axes": axes}).raise_for_status()
+    with later() as new:
+        (line,) = settled(new, "machines")["machines"]
+        assert line["today"] == {"verdict_changed": 2, "axes": [2, 3]}
+
+
 def test_nothing_is_asked_twice(client: TestClient, later: Later, asked: Asking) -> None:
     machine, *_ = make(client)
     with later() as new, later() as beside:
