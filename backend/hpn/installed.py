@@ -26,7 +26,7 @@ EXTRAS = {
         ),
         *("xlsxwriter", "zstandard"),
     ),
-    "report": ("segno", "typst"),
+    "report": ("pypdf", "segno", "typst"),
     "aas": ("basyx", "pyecma376_2"),
     "fleet": ("pyarrow", "tqdm"),
     "cluster": ("dask", "distributed"),

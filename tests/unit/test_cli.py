@@ -367,6 +367,7 @@ def test_help_names_every_command(capsys: Output) -> None:
         "select",
         "fleet",
         "machine",
+        "verify",
         "catalogue",
         "serve",
         "database",

@@ -1,5 +1,5 @@
-"""Command line: `hpn select application.json`, `hpn fleet axes.parquet answers.parquet`, `hpn catalogue`, `hpn serve`,
-`hpn machine export ID FILE`, `hpn database`, `hpn key NAME`, `hpn --version`.
+"""Command line: `hpn select application.json`, `hpn fleet axes.parquet answers.parquet`, `hpn verify report.pdf`,
+`hpn catalogue`, `hpn serve`, `hpn machine export ID FILE`, `hpn database`, `hpn key NAME`, `hpn --version`.
 
 Each command is a module of this package, which is imported when the command runs: none waits for what others need.
 """
@@ -18,7 +18,7 @@ from hpn.installed import require
 
 EXTRAS = {"serve": "serve", "database": "serve", "machine": "serve", "fleet": "fleet"}
 """Extras of commands that need one."""
-COMMANDS = "select, fleet, machine, catalogue, serve, database or key"
+COMMANDS = "select, fleet, machine, verify, catalogue, serve, database or key"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -94,6 +94,7 @@ def _parser() -> argparse.ArgumentParser:
     form.add_argument("--table", action="store_true", help="print a table; the default on a terminal")
     _add_fleet(commands.add_parser("fleet", help="select gears for a table of axes"))
     _add_machine(commands.add_parser("machine", help="export a machine of the database to a file, or import one"))
+    _add_verify(commands.add_parser("verify", help="calculate the figures of a file again, and compare what it shows"))
     listing = commands.add_parser("catalogue", help="list the gears, or show one")
     listing.add_argument("designation", nargs="?")
     serve = commands.add_parser("serve", help="serve page and API")
@@ -121,6 +122,12 @@ def _add_machine(machine: argparse.ArgumentParser) -> None:
         default=[],
         help="answer to a question about a table, such as Moment:Nm, 3:skip or decimal:,",
     )
+
+
+def _add_verify(check: argparse.ArgumentParser) -> None:
+    check.add_argument("file", type=Path, help="PDF, XLSX or AASX of a selection, JSON of a selection or machine")
+    check.add_argument("--application", type=Path, metavar="FILE", help="application of an older file that has none")
+    check.add_argument("--json", action="store_true", help="print the verdict as JSON")
 
 
 def _add_fleet(fleet: argparse.ArgumentParser) -> None:

@@ -10,6 +10,7 @@ which one a package claims. Most other tools read 3.0 alone.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from datetime import UTC
 from io import BytesIO
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
@@ -23,10 +24,11 @@ from hpn.account.lines import Line, LineTable, Value
 from hpn.account.published import line_of
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
-from hpn.engine.selection import encode
 from hpn.files.aas import Metamodel
 from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
+from hpn.files.carried import APPLICATION, DOCUMENT, RESULT, carried
 from hpn.files.export import LOSS_FREE, Export
+from hpn.words.reader import Reader
 from hpn.words.units import symbol_of
 from hpn.words.wording import Sentence
 
@@ -58,7 +60,10 @@ NAMESPACES: Mapping[Metamodel, bytes] = {
     "3.1": b"https://admin-shell.io/aas/3/1",
 }
 
-DATA_PART, APPLICATION_PART, RESULT_PART = "/aasx/data.xml", "/aasx/application.json", "/aasx/result.json"
+DATA_PART, PARTS = "/aasx/data.xml", "/aasx/"
+CARRIED = {APPLICATION: "Application", RESULT: "Result", DOCUMENT: "Document"}
+"""Parts that a package carries as JSON, and what the submodel calls them."""
+
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 """Earliest time that a zip entry can have; the content says when the selection was saved."""
 
@@ -66,9 +71,8 @@ FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
     """The .aasx package on an export in a version of the metamodel; the same bytes for the same selection."""
     files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
-    application = export.application.model_dump_json(exclude_none=True).encode()
-    files.add_file(APPLICATION_PART, BytesIO(application), "application/json")
-    files.add_file(RESULT_PART, BytesIO(export.reply or encode(export.selection)), "application/json")
+    for name, part in carried(replace(export, made=None), Reader()).items():
+        files.add_file(PARTS + name, BytesIO(part), "application/json")
     packed = BytesIO()
     with aasx.AASXWriter(packed, failsafe=False) as writer:
         writer.write_core_properties(_properties(export))
@@ -197,8 +201,7 @@ def _further_information(export: Export) -> model.SubmodelElementCollection:
 def _selection_result(export: Export) -> model.Submodel:
     elements: list[model.SubmodelElement] = [
         *_texts(export),
-        model.File("Application", "application/json", APPLICATION_PART),
-        model.File("Result", "application/json", RESULT_PART),
+        *(model.File(id_short, "application/json", PARTS + name) for name, id_short in CARRIED.items()),
         model.SubmodelElementCollection("Duty", _duty(export)),
         *_cycle(export),
         model.SubmodelElementCollection("Figures", _calculated(export)),

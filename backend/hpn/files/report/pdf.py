@@ -10,6 +10,7 @@ from typing import Any
 
 import typst
 
+from hpn.files.carried import carried
 from hpn.files.export import Export
 from hpn.files.report.content import content
 from hpn.installed import data_folder
@@ -27,25 +28,35 @@ REPLACEMENT = "□"
 KEPT_COMPILATIONS = 10
 """Compilations for which typst keeps what it laid out, a quarter of a gigabyte for 10,000 phases."""
 
+NO_PARTS: Mapping[str, bytes] = {}
+
 _UNSHOWN = re.compile(r'the text `"(.+?)"` could not be displayed')
 _ESCAPED = re.compile(r"\\u\{([0-9a-f]+)\}")
 
 
 def pdf(export: Export, reader: Reader) -> bytes:
     """The report on an export."""
-    return printed("report.typ", content(export, reader), export.heading.title.strip(), export.created)
+    title, parts = export.heading.title.strip(), carried(export, reader)
+    return printed("report.typ", content(export, reader), title, export.created, parts)
 
 
-def printed(template: str, data: Mapping[str, Any], title: str, created: datetime | None) -> bytes:
-    """The report that a template makes of data.
+def printed(
+    template: str,
+    data: Mapping[str, Any],
+    title: str,
+    created: datetime | None,
+    attached: Mapping[str, bytes] = NO_PARTS,
+) -> bytes:
+    """The report that a template makes of data, with parts attached as JSON.
 
     PDF/UA refuses a text that no font can show, so what typst names as such is replaced, and a note says what it was.
     """
     seconds = int(created.timestamp()) if created else 0
+    texts = {"attached": json.dumps({name: part.decode() for name, part in attached.items()})}
     unshown: set[str] = set()
     while True:
         try:
-            return _compiled(template, _without(unshown, data), title, seconds)
+            return _compiled(template, _without(unshown, data), {"title": title, **texts}, seconds)
         except typst.TypstError as error:
             found = _unshown(error)
             if found <= unshown:
@@ -55,13 +66,13 @@ def printed(template: str, data: Mapping[str, Any], title: str, created: datetim
             _forget()
 
 
-def _compiled(template: str, data: Mapping[str, Any], title: str, seconds: int) -> bytes:
+def _compiled(template: str, data: Mapping[str, Any], texts: Mapping[str, str], seconds: int) -> bytes:
     families = dict.fromkeys([*FIRST_FONTS, *(name for name in _fonts().families() if name.startswith("Noto"))])
     compiler = typst.Compiler(
         b"\n".join((FOLDER / name).read_bytes() for name in (*LOOK, template)),
         font_paths=_fonts(),
         ignore_system_fonts=True,
-        sys_inputs={"data": json.dumps({**data, "fonts": [*families]}), "title": title},
+        sys_inputs={"data": json.dumps({**data, "fonts": [*families]}), **texts},
     )
     result = compiler.compile(format="pdf", pdf_standards=["ua-1"], timestamp=seconds)
     assert isinstance(result, bytes)

@@ -1,10 +1,14 @@
 """The workbook: title block, checks, figures and notes, all inputs, every candidate, and the printed equations."""
 
+import json
+from collections.abc import Mapping
 from io import BytesIO
+from typing import Any
 
 from hpn.account.over_tolerance import over_tolerance
 from hpn.account.readings import CheckReading
 from hpn.engine.tolerance_words import tolerance_of
+from hpn.files.carried import carried
 from hpn.files.export import Export
 from hpn.files.words import catalogue_version
 from hpn.files.workbook.candidates import write_candidates
@@ -20,6 +24,9 @@ PROVED_WORD, SAMPLED_WORD = N_("proved"), N_("sampled")
 WIDTHS = (38, 18, 13, 13, 9, 11, 14, 30)
 """Columns of the first sheet in characters; the basis of each check stands behind them and is not printed."""
 
+CARRIED = "hpn"
+"""Name of the sheet that is not shown."""
+
 
 def workbook(export: Export, reader: Reader) -> bytes:
     """The workbook on an export; the same bytes for the same selection."""
@@ -33,8 +40,22 @@ def workbook(export: Export, reader: Reader) -> bytes:
     ):
         if write is not write_equations or export.gear(export.candidate):
             write(SelectionSheet(book.add_worksheet(reader.text(name)), styles, export, reader))
+    write_carried(book.add_worksheet(CARRIED), carried(export, reader))
     book.close()
     return content.getvalue()
+
+
+def write_carried(sheet: Any, parts: Mapping[str, bytes]) -> None:
+    """Write what the workbook carries of itself: on a sheet that is not shown, a row for each part, in cells of ASCII.
+
+    The file format takes `_x0041_` for a letter, and has room for some 32,000 characters in a cell.
+    """
+    sheet.very_hidden()
+    for row, (name, part) in enumerate(parts.items()):
+        text = json.dumps(json.loads(part), separators=(",", ":")).replace("_x", "\\u005fx")
+        cells = [text[start : start + LONGEST_TEXT] for start in range(0, len(text), LONGEST_TEXT)]
+        for column, cell in enumerate([name, *cells]):
+            sheet.write_string(row, column, cell)
 
 
 def _write_selection(sheet: SelectionSheet) -> None:

@@ -1,0 +1,87 @@
+"""`hpn verify`: the figures of a file beside those that are calculated again."""
+
+import argparse
+import errno
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import msgspec
+
+from hpn import ENGINE_VERSION
+from hpn.application import Application
+from hpn.catalogue import load_catalogue
+from hpn.verify.shown import UnreadableFileError
+from hpn.verify.verdict import Finding, Verdict
+from hpn.verify.verify import verify
+from hpn.web.settings import Settings
+
+MAXIMUM_FILE_BYTES = 128_000_000
+DIFFERS = 3
+"""Exit code for a file that differs."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print what is the same, what differs and why, and what can't be checked; 0 where nothing differs."""
+    settings = Settings()
+    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
+    application = _application(options.application) if options.application else None
+    try:
+        verdict = verify(_content(options.file), catalogue, application)
+    except UnreadableFileError as error:
+        raise UnreadableFileError(f"{options.file}: {error}") from None
+    if options.json:
+        sys.stdout.write(msgspec.json.encode(verdict).decode() + "\n")
+    else:
+        print("\n".join(_lines(verdict, catalogue.version)))
+    return DIFFERS if verdict.differs else 0
+
+
+def _application(path: Path) -> Application:
+    """Application of a file of JSON: itself, or that of a saved selection."""
+    try:
+        value = json.loads(_content(path))
+    except (ValueError, RecursionError):
+        raise UnreadableFileError(f"{path}: is no JSON") from None
+    is_saved = isinstance(value, dict) and "application" in value
+    return Application.model_validate(value["application"] if is_saved else value)
+
+
+def _content(path: Path) -> bytes:
+    with path.open("rb") as file:
+        content = file.read(MAXIMUM_FILE_BYTES + 1)
+    if len(content) > MAXIMUM_FILE_BYTES:
+        raise OSError(errno.EFBIG, f"is larger than {MAXIMUM_FILE_BYTES} bytes", str(path))
+    return content
+
+
+def _lines(verdict: Verdict, catalogue: str) -> Iterator[str]:
+    versions = verdict.versions
+    yield f"{verdict.file}: {_version('engine', versions.engine, ENGINE_VERSION)}, " + _version(
+        "catalogue", versions.catalogue, catalogue
+    )
+    yield f"{verdict.same} shown figures are the same to 1e-12, or to the digits that are shown"
+    for finding in verdict.differs:
+        yield f"differs: {_sentence(finding)}"
+    for text in verdict.unchecked:
+        yield f"can’t be checked: {text}"
+
+
+def _version(name: str, shown: str | None, here: str) -> str:
+    if shown is None:
+        return f"{name} not said, here {here}"
+    return f"{name} {shown}" + (", as here" if shown == here else f", here {here}")
+
+
+REASONS = {
+    "file": "the file was altered",
+    "engine": "another version of the engine",
+    "catalogue": "another version of the catalogue",
+}
+
+
+def _sentence(finding: Finding) -> str:
+    reasons = " or ".join(REASONS[reason] for reason in finding.reasons)
+    shown, calculated = (f"“{text}”" if text else "nothing" for text in (finding.shown, finding.calculated))
+    return f"{finding.place}: shows {shown}, calculated {calculated}: {reasons}"

@@ -1,0 +1,53 @@
+"""A workbook: its rows, the parts on the sheet that is not shown, and its link."""
+
+from collections.abc import Iterator, Mapping
+from io import BytesIO
+from typing import Any
+
+import openpyxl
+from openpyxl.worksheet.worksheet import Worksheet
+
+from hpn.files.workbook.workbook import CARRIED
+from hpn.verify.shown import Shown, UnreadableFileError
+
+
+def _sheets(content: bytes, *, values: bool) -> list[Worksheet]:
+    try:
+        book = openpyxl.load_workbook(BytesIO(content), data_only=values)
+        return list(book.worksheets)
+    except Exception as error:  # damaged files make it raise errors of every kind
+        raise UnreadableFileError(f"the workbook can’t be read: {error}") from None
+
+
+def parts_of(content: bytes) -> Mapping[str, bytes]:
+    """Parts that a workbook carries, by their names."""
+    rows = (sheet.iter_rows(values_only=True) for sheet in _sheets(content, values=True) if sheet.title == CARRIED)
+    return {str(name): "".join(map(str, filter(None, cells))).encode() for sheet in rows for name, *cells in sheet}
+
+
+def lines_of(content: bytes) -> list[Shown]:
+    """Rows of its sheets: values with every digit, and the formulas behind them."""
+    return list(_lines(content))
+
+
+def _lines(content: bytes) -> Iterator[Shown]:
+    for values, formulas in zip(_sheets(content, values=True), _sheets(content, values=False), strict=True):
+        if values.title == CARRIED:
+            continue
+        for row, behind in zip(values.iter_rows(), formulas.iter_rows(), strict=True):
+            texts = [_written(cell.value) for cell in row]
+            live = [cell.value for cell in behind if isinstance(cell.value, str) and cell.value.startswith("=")]
+            if any(texts):
+                yield Shown(f"{values.title}, row {row[0].row}", " | ".join(filter(None, texts)), " ".join(live))
+
+
+def _written(value: Any) -> str:
+    if value is None:
+        return ""
+    return repr(float(value)) if isinstance(value, int | float) and not isinstance(value, bool) else str(value).strip()
+
+
+def links_of(content: bytes) -> list[str]:
+    """Addresses that stand alone in a cell."""
+    cells = (cell.value for sheet in _sheets(content, values=True) for row in sheet.iter_rows() for cell in row)
+    return [value for value in cells if isinstance(value, str) and value.startswith(("http://", "https://"))]

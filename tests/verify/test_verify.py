@@ -1,0 +1,234 @@
+"""`hpn verify`: files of this version and of the two before, as they are and with a digit altered."""
+
+import json
+import random
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from zipfile import ZipFile
+
+import msgspec
+import openpyxl
+import pytest
+
+from hpn import ENGINE_VERSION
+from hpn.application import Application
+from hpn.catalogue import Catalogue
+from hpn.cli import main
+from hpn.documents.answers import AxisQuestion, answers
+from hpn.documents.merge import resolve
+from hpn.engine.selection import encode
+from hpn.files.aas.submodel import package
+from hpn.files.export import DIGITS
+from hpn.files.report.pdf import pdf
+from hpn.files.workbook.workbook import workbook
+from hpn.verify import paper
+from hpn.verify.shown import UnreadableFileError
+from hpn.verify.verify import verify
+from hpn.words.reader import Reader
+from tests.build import Json, worked_example
+from tests.report.cases import CASES, typed_export_of
+from tests.verify.altered import count_of_digits, with_digit_altered
+from tests.verify.earlier import VERSIONS, file_of
+
+ENGLISH = Reader(digits=DIGITS)
+GERMAN = Reader("de", ("lb_in", "lbf", "lb", "in", "degF"), DIGITS)
+MAKERS: dict[str, Callable[..., bytes]] = {
+    "pdf": lambda export, reader: pdf(export, reader),
+    "xlsx": lambda export, reader: workbook(export, reader),
+    "aasx": lambda export, reader: package(export),
+}
+
+
+@pytest.mark.parametrize("case", ["everything", "nothing suitable", "extremes"])
+@pytest.mark.parametrize("kind", MAKERS)
+def test_a_file_of_this_version_is_the_same_in_any_language_and_unit(
+    kind: str, case: str, catalogue: Catalogue
+) -> None:
+    for reader in (ENGLISH, GERMAN):
+        export = typed_export_of(CASES[case], catalogue, reference="4711")
+        verdict = verify(MAKERS[kind](export, reader), catalogue)
+        assert (verdict.differs, verdict.unchecked) == ((), ())
+        assert verdict.same > 100
+        assert verdict.versions == (type(verdict.versions))(ENGINE_VERSION, catalogue.version)
+
+
+@pytest.mark.parametrize("case", ["example"])
+def test_one_altered_digit_anywhere_on_a_report_is_named(
+    case: str, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Digits are altered by pikepdf, in the content of the page; the report to compare with is made once."""
+    report = pdf(typed_export_of(CASES[case], catalogue), ENGLISH)
+    monkeypatch.setattr(paper.Format, "made", lambda *_: report)
+    count = count_of_digits(report)
+    assert count > 500
+    for number in random.Random(53).sample(range(count), 12):
+        altered, place = with_digit_altered(report, number)
+        found = verify(altered, catalogue).differs
+        assert {finding.place for finding in found} == {place}
+        assert all(finding.reasons == ("file",) for finding in found)
+
+
+def test_a_digit_altered_in_a_workbook_is_named_with_its_row(catalogue: Catalogue) -> None:
+    book = openpyxl.load_workbook(BytesIO(workbook(typed_export_of(CASES["example"], catalogue), ENGLISH)))
+    sheet = book.worksheets[0]
+    cell = next(c for row in sheet.iter_rows() for c in row if c.value == 149.0)
+    cell.value = 149.00000001
+    packed = BytesIO()
+    book.save(packed)
+    found = [one for one in verify(packed.getvalue(), catalogue).differs if "149.0" in one.shown]
+    assert [one.place for one in found] == [f"Selection, row {cell.row}"]
+    assert found[0].reasons == ("file",)
+
+
+def test_a_digit_altered_in_a_package_is_named_with_its_path(catalogue: Catalogue) -> None:
+    def alter(name: str, part: bytes) -> bytes:
+        return part.replace(b">149.0<", b">148.0<", 1) if name == "aasx/data.xml" else part
+
+    made = package(typed_export_of(CASES["example"], catalogue))
+    found = verify(rezipped(made, alter), catalogue).differs
+    assert [one.place for one in found] == ["TechnicalData/TechnicalProperties/repeated_peak_torque_Nm"]
+
+
+def test_an_altered_answer_inside_a_file_is_named_though_the_lines_agree_with_it(catalogue: Catalogue) -> None:
+    def alter(name: str, part: bytes) -> bytes:
+        return part.replace(b'"limit":80', b'"limit":90') if name == "aasx/result.json" else part
+
+    found = verify(rezipped(package(typed_export_of(CASES["example"], catalogue)), alter), catalogue).differs
+    assert {one.reasons for one in found} == {("file",)}
+    assert any(one.place.startswith("result.json/candidates/") for one in found)
+
+
+def rezipped(content: bytes, alter: Callable[[str, bytes], bytes]) -> bytes:
+    packed = BytesIO()
+    with ZipFile(BytesIO(content)) as source, ZipFile(packed, "w") as target:
+        for name in source.namelist():
+            target.writestr(name, alter(name, source.read(name)))
+    return packed.getvalue()
+
+
+# --- Files of earlier versions ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("name", ["report.pdf", "report.xlsx", "submodel.aasx", "selection.json"])
+def test_files_of_earlier_versions_show_what_is_calculated_today(version: str, name: str, catalogue: Catalogue) -> None:
+    """Most of their lines have a counterpart today; `earlier.py` says where the files come from."""
+    verdict = verify(file_of(version, name), catalogue)
+    assert verdict.differs == ()
+    assert verdict.versions.engine == version
+    assert verdict.same > 90
+    assert len(verdict.unchecked) < 90
+
+
+def test_an_altered_figure_of_an_earlier_version_is_named(catalogue: Catalogue) -> None:
+    """The limits are those of today, so that the catalogue is not the reason."""
+    value = json.loads(file_of("1.0.0", "selection.json"))
+    value["result"]["candidates"][0]["average_input_speed_rpm"] += 1
+    found = verify(json.dumps(value).encode(), catalogue).differs
+    assert [one.place for one in found] == ["/result/candidates/0/average_input_speed_rpm"]
+    assert found[0].reasons == ("engine",)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_digit_altered_on_a_report_of_an_earlier_version_is_named(version: str, catalogue: Catalogue) -> None:
+    """As differing, or among what can't be checked with its line; numbers of tables and pages may escape."""
+    report = file_of(version, "report.pdf")
+    plain, named = verify(report, catalogue), 0
+    for number in random.Random(7).sample(range(count_of_digits(report)), 6):
+        verdict = verify(with_digit_altered(report, number)[0], catalogue)
+        named += (verdict.differs, verdict.unchecked) != (plain.differs, plain.unchecked)
+    assert named >= 3
+
+
+def test_a_report_that_leads_to_a_saved_selection_needs_its_application(catalogue: Catalogue) -> None:
+    report = file_of("1.0.0", "saved.pdf")
+    with pytest.raises(UnreadableFileError, match="--application"):
+        verify(report, catalogue)
+    saved = json.loads(file_of("1.0.0", "selection.json"))
+    verdict = verify(report, catalogue, Application.model_validate(saved["application"]))
+    assert verdict.differs == ()
+
+
+# --- JSON -------------------------------------------------------------------------------------------------------------
+
+
+def test_an_answer_is_read_by_its_link(catalogue: Catalogue) -> None:
+    answer = json.loads(encode(typed_export_of(worked_example(), catalogue).selection))
+    assert verify(json.dumps(answer).encode(), catalogue).differs == ()
+    answer["duty"]["average_torque_Nm"] *= 1 + 1e-9
+    found = verify(json.dumps(answer).encode(), catalogue).differs
+    assert [(one.place, one.reasons) for one in found] == [("/duty/average_torque_Nm", ("file",))]
+
+
+OPEN: Json = {"duty_cycle": {"phases": []}}
+
+
+def machine_of(catalogue: Catalogue) -> Json:
+    """A machine of two axes as `GET /machines/{id}` gives it."""
+    common: Json = {"requirements": {"life_h": 20000}}
+    own = [worked_example(requirements={"ratios": [5]}), OPEN]
+    asked = [AxisQuestion(resolve(part, common)) for part in own]
+    axes = [
+        {"number": place, "application": part, "resolved": one.resolved.whole, "answer": msgspec.to_builtins(answer)}
+        for place, (part, one, answer) in enumerate(zip(own, asked, answers(asked, catalogue), strict=True), 1)
+    ]
+    return {"title": "Line", "common": common, "axes": axes}
+
+
+def test_a_machine_is_calculated_axis_by_axis(catalogue: Catalogue) -> None:
+    machine = machine_of(catalogue)
+    verdict = verify(json.dumps(machine).encode(), catalogue)
+    assert (verdict.differs, verdict.unchecked) == ((), ())
+    machine["axes"][0]["answer"]["weight_kg"] = 2.7
+    machine["axes"][0]["resolved"]["requirements"]["life_h"] = 10000
+    found = verify(json.dumps(machine).encode(), catalogue).differs
+    assert {one.place for one in found} == {"/axes/0/answer/weight_kg", "/axes/0/resolved/requirements/life_h"}
+
+
+# --- The command ------------------------------------------------------------------------------------------------------
+
+
+def test_the_command_says_what_differs_by_its_exit_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "selection.json"
+    file.write_bytes(file_of("1.1.0", "selection.json"))
+    assert main(["verify", str(file)]) == 0
+    assert "same to 1e-12" in capsys.readouterr().out
+
+    value = json.loads(file.read_bytes())
+    value["result"]["selected"] = "HPN-32A-5"
+    file.write_text(json.dumps(value))
+    assert main(["verify", str(file)]) == 3
+    assert (
+        "/result/selected: shows “HPN-32A-5”, calculated “HPN-20A-5”: the file was altered" in capsys.readouterr().out
+    )
+
+    assert main(["verify", str(file), "--json"]) == 3
+    assert json.loads(capsys.readouterr().out)["differs"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        *(b"", b"no file of ours", b"[]", b"{}", b'{"axes": [1]}', b'{"result": {}, "application": {}}'),
+        *(b"%PDF-1.7", b"%PDF-1.7\n" + b"1 0 obj" * 50, b"PK", b"PK\x03\x04xl/workbook.xml", b"[" * 100_000),
+        *(b'{"candidates": [], "link": "/?T=1&n=1&t=1"}', b'{"axes": [{"application": {"duty_cycle": 7}}]}', b"\xff"),
+    ],
+)
+def test_what_is_no_file_of_ours_is_a_sentence(
+    content: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "file"
+    file.write_bytes(content)
+    code = main(["verify", str(file)])
+    shown = capsys.readouterr()
+    if content.startswith(b'{"axes": [{'):  # an open axis has no figure
+        assert code == 0
+    else:
+        assert (code, shown.out) == (2, "")
+        assert shown.err.startswith(f"{file}: ") and shown.err.count("\n") == 1
+
+
+def test_a_missing_file_is_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", str(tmp_path / "none.pdf")]) == 2
+    assert "there is no such file" in capsys.readouterr().err
