@@ -110,6 +110,21 @@ FORMS = (
     LINKS[8] + b"&written=de.lb_in&do=add",
     b"T=354%2C03&n=250&t=0%2C3&written=de.lb_in&was=Nm%3A40&FR=1.234%2C5&gear=HPN-14A-5&pin=HPN-20A-5&unpin=HPN-20A-5",
 )
+MOTORS = (
+    {"designation": "M 40", "maximum_speed_rpm": 6000, "rated_speed_rpm": 3000, "rated_torque_Nm": 2.4},
+    {"designation": "M 60", "rated_torque_Nm": 9, "peak_torque_Nm": 27, "inertia_kgm2": 1e-3, "weight_kg": 4.2},
+    {"designation": "M 80", "stall_torque_Nm": 30.5, "peak_torque_Nm": 90, "inertia_kgm2": 1e-2},
+)
+PAIRED = (
+    {"application": cycle(phase(40, 250), requirements=INERTIAS | {"motor": {"inertia_ratio": 5}})},
+    {"application": {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}}, "best_of": "motor", "drive_resonance_Hz": 9},
+    {"application": {"duty_cycle": {"motion": LIFTING}}, "rank_by": "resonance", "top": 1000},
+    {"application": worked_example(output_load=LOAD), "rank_by": "utilisation"},
+)
+PAIRS = tuple(
+    json.dumps(entry).encode()
+    for entry in (*({**one, "motors": MOTORS} for one in PAIRED), {"name": "Ours", "motors": MOTORS})
+)
 MACHINES = tuple(
     json.dumps(machine).encode()
     for machine in (

@@ -177,6 +177,21 @@ async def _machine(world: World, random: Random, content: bytes) -> str:
     return judged(saved, api=True)
 
 
+async def _pairs(world: World, random: Random, content: bytes) -> str:
+    """Ask for pairs, or keep a list of motors, read it and ask for pairs with it."""
+    path = "/api/v1/pairs" + random.choice(("", "?failing=1"))
+    if b'"application"' in content:
+        return judged(await world.call("POST", path, headers=[JSON], body=content), api=True)
+    saved = await world.call("POST", "/api/v1/motor-lists", headers=[JSON], body=content)
+    if saved.status != 201:
+        return judged(saved, api=True)
+    id = msgspec.json.decode(saved.body)["id"]
+    judged(await world.call("GET", f"/api/v1/motor-lists/{id}"), api=True)
+    asked = msgspec.json.encode({"application": corpus.APPLICATIONS[-1 - random.randrange(5)], "list": id})
+    judged(await world.call("POST", path, headers=[JSON], body=asked), api=True)
+    return judged(await world.call("DELETE", f"/api/v1/motor-lists/{id}"), api=True)
+
+
 _QUESTIONS = [Application.model_validate(entry) for entry in corpus.APPLICATIONS[1:3]]
 _QUESTIONS.append(
     Application.model_validate(corpus.APPLICATIONS[0] | {"output_load": {"radial_N": 9, "model": "digitised"}})
@@ -228,6 +243,7 @@ DOORS = {
     "ndjson": Door(_lines, corpus.LINES, corpus.MARKS),
     "supplement": Door(_supplement, corpus.SUPPLEMENTS, corpus.COLUMNS),
     "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS),
+    "pairs": Door(_pairs, corpus.PAIRS, corpus.MARKS),
     "machine": Door(_machine, corpus.MACHINES, corpus.MARKS),
     "json": Door(_json, (*corpus.JSON, *corpus.JSON, *corpus.BATCHES, *corpus.SAVES), corpus.MARKS),
 }

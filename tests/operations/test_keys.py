@@ -233,6 +233,9 @@ def test_the_command_prints_a_key_and_the_pair_that_admits_it(
     assert main(["key", "no spaces"]) == 2
 
 
+LISTS = ("/selections", "/machines", "/machines/saved", "/motor-lists")
+
+
 def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() -> None:
     open_to_all = {"/healthz", "/readyz", "/static/{name:path}"}
     routes = {(method, str(route.path)): group_of(route) for route in every_route() for method in route.methods or ()}
@@ -244,11 +247,11 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group == "metrics"
         elif path.endswith(("/select/batch", "/fleet")) or (path, method) == ("/machines", "POST"):
             assert group == "batch"
-        elif path.removeprefix("/api/v1") in ("/selections", "/machines", "/machines/saved") and method == "GET":
+        elif path.removeprefix("/api/v1") in LISTS and method == "GET":
             assert group == "listing"
         elif path == "/machines/{id}/axes/{number}":  # the workbench on an axis
             assert group == "calculator"
-        elif "/selections" in path or "/machines" in path:
+        elif "/selections" in path or "/machines" in path or "/motor-lists" in path:
             expected = {"GET": "reading", "POST": "writing"} | dict.fromkeys(("PUT", "PATCH", "DELETE"), "deleting")
             sent_to = ("/rename", "/delete", *(("/change", "/save", "/axes", "/revisions") if method == "POST" else ()))
             changes = path.endswith(sent_to)

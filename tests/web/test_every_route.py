@@ -68,6 +68,7 @@ class Address:
 
     def __init__(self, saved: str, machine: str) -> None:
         self.values = {
+            "motor-lists/{id}": "motor-lists/server",
             "{id}": saved,
             "{machine}": machine,
             "{designation}": "HPN-20A-5",

@@ -6,6 +6,8 @@ from hpn.store.errors import (
     KeyReusedError,
     KeySpentError,
     LabelTakenError,
+    ListsSpentError,
+    NameTakenError,
     NewerDatabaseError,
     NoRoomError,
     ShareSpentError,
@@ -15,6 +17,7 @@ from hpn.store.errors import (
 )
 from hpn.store.keys import Once
 from hpn.store.lists import ID, LineFilter, Sorting
+from hpn.store.motor_lists import MOST_LISTS, MotorListDraft, MotorListLine, SavedMotorList
 from hpn.store.records import AxisDraft, DocumentLine, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
 from hpn.store.saved import Draft, SavedSelection, SelectionLine
 from hpn.store.store import Store
@@ -22,6 +25,7 @@ from hpn.store.todays import AxisVerdict, Stale, Versions
 
 __all__ = [
     "ID",
+    "MOST_LISTS",
     "AxisDraft",
     "AxisVerdict",
     "Change",
@@ -33,14 +37,19 @@ __all__ = [
     "LabelTakenError",
     "Limits",
     "LineFilter",
+    "ListsSpentError",
     "Machine",
     "MachineDraft",
+    "MotorListDraft",
+    "MotorListLine",
+    "NameTakenError",
     "NewerDatabaseError",
     "NoRoomError",
     "Once",
     "RevisionDraft",
     "RevisionLine",
     "SavedAxis",
+    "SavedMotorList",
     "SavedSelection",
     "SelectionLine",
     "ShareSpentError",

@@ -47,6 +47,14 @@ class LabelTakenError(StoreError):
     """A document has a revision with this label already."""
 
 
+class NameTakenError(StoreError):
+    """Its owner has a list of motors with this name already."""
+
+
+class ListsSpentError(StoreError):
+    """Its owner has as many lists of motors as one may have."""
+
+
 class ExcessError(StoreError):
     """A document would have more of something than one may have: `axes`, `phases` or `revisions`."""
 

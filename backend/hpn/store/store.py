@@ -27,6 +27,16 @@ from hpn.store.machines import (
     require_room,
     save_machine,
 )
+from hpn.store.motor_lists import (
+    MotorListDraft,
+    MotorListLine,
+    SavedMotorList,
+    add_list,
+    read_list,
+    read_lists,
+    remove_list,
+    replace_list,
+)
 from hpn.store.records import DocumentKind, DocumentLine, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
 from hpn.store.rehearsal import rehearse
 from hpn.store.saved import Draft, Page, SavedSelection, SelectionLine, unpacked
@@ -299,6 +309,34 @@ class Store(Transactions):
         """Ids of saved documents that were deleted since then, of a year at most, and when; the latest last."""
         async with self._reading() as connection:
             return await read_deletions(connection, since, kind)
+
+    # --- Lists of motors ----------------------------------------------------------------------------------------------
+
+    async def add_motor_list(self, draft: MotorListDraft, owner: str | None) -> str:
+        """Id of a new list of motors; raises NameTakenError and ListsSpentError."""
+        return await self._write(lambda connection: add_list(connection, draft, owner or ""))
+
+    async def replace_motor_list(self, id: str, draft: MotorListDraft, version: int | None = None) -> bool:
+        """Replace a list of motors; False where there is none, or none in the version given. Raises NameTakenError."""
+        return bool(ID.fullmatch(id)) and await self._write(
+            lambda connection: replace_list(connection, id, draft, version)
+        )
+
+    async def delete_motor_list(self, id: str, version: int | None = None) -> bool:
+        """Delete a list of motors; False as `replace_motor_list`."""
+        return bool(ID.fullmatch(id)) and await self._write(lambda connection: remove_list(connection, id, version))
+
+    async def motor_list(self, id: str) -> SavedMotorList | None:
+        """The list of motors with this id, or None."""
+        if not ID.fullmatch(id):
+            return None
+        async with self._reading() as connection:
+            return await read_list(connection, id)
+
+    async def motor_lists(self) -> Sequence[MotorListLine]:
+        """All lists of motors by their names."""
+        async with self._reading() as connection:
+            return await read_lists(connection)
 
     # --- Today --------------------------------------------------------------------------------------------------------
 

@@ -187,6 +187,21 @@ deletions = Table(
     Index("deletions_deleted", "deleted", "document"),
 )
 
+motor_lists = Table(
+    "motor_lists",
+    metadata,
+    Column("id", String(32), primary_key=True),
+    Column("owner", Text, nullable=False, server_default=""),  # name of the API key that keeps it, blank without one
+    Column("name", Text, nullable=False),
+    Column("name_key", Text, nullable=False),  # in one case
+    Column("created", UtcTime, nullable=False),
+    Column("updated", UtcTime, nullable=False),
+    Column("version", Integer, nullable=False, server_default="1"),
+    Column("motors", Integer, nullable=False),
+    Column("content_packed", LargeBinary, nullable=False),
+    Index("motor_lists_name", "owner", "name_key", unique=True),
+)
+
 catalogues = Table(
     "catalogues",
     metadata,

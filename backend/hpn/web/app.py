@@ -26,6 +26,7 @@ from hpn.web.api import (
     health,
     machine_files,
     machines,
+    motor_lists,
     motors,
     openapi,
     pairs,
@@ -117,6 +118,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     catalogue.router,
     motors.router,
     pairs.router,
+    motor_lists.router,
     selections.router,
     selection_revisions.router,
     machines.router,
@@ -151,6 +153,7 @@ ROUTERS: tuple[APIRouter, ...] = (
 BODIES = (
     Application,
     Pairing,
+    motor_lists.MotorList,
     schemas.Batch,
     archive.SaveRequest,
     archive.Names,

@@ -10,21 +10,17 @@ from starlette.responses import Response
 
 from hpn.application import Application, InputError, MotorEntry, Pairing
 from hpn.catalogue import Catalogue
-from hpn.engine.motors import entries_of
 from hpn.engine.pairs import Pairs, pairs_of
 from hpn.links.writer import to_link
 from hpn.web.api import schemas
+from hpn.web.api.motor_lists import motors_of
 from hpn.web.api.replies import JSONBytes, encode
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.pools import compute
 from hpn.web.form.linked import LONGEST_LINK
-from hpn.words.wording import N_, Sentence
 
 router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calculator")])
-
-SERVER = "server"
-"""Id of the list that motors.csv is."""
 
 Failing = Annotated[bool, Query(description="True: the pairs that are not suitable, the nearest miss first.")]
 
@@ -41,25 +37,16 @@ async def pairs(request: Request, failing: Failing = False) -> Response:
     """Every gear that the application allows with every motor, ranked; each is judged as `POST /api/v1/select` does."""
     state: State = request.app.state
     body = await read_body(request)
-    return JSONBytes(await compute(request, "pages", _reply, body, state.catalogue, failing))
+    wanted = await compute(request, "pages", parsed, Pairing, body)
+    motors = wanted.motors or await motors_of(request, wanted.list or "")
+    return JSONBytes(await compute(request, "pages", _reply, wanted, motors, state.catalogue, failing))
 
 
-def _reply(body: bytes, catalogue: Catalogue, failing: bool) -> bytes:
-    wanted = parsed(Pairing, body)
-    motors = wanted.motors or _listed(wanted.list, catalogue)
+def _reply(wanted: Pairing, motors: Sequence[MotorEntry], catalogue: Catalogue, failing: bool) -> bytes:
     try:
         return encode(pairs_of(wanted, motors, catalogue, _links(wanted.application), failing=failing))
     except InputError as error:
         raise error.below("application") from None
-
-
-def _listed(name: str | None, catalogue: Catalogue) -> Sequence[MotorEntry]:
-    if name != SERVER:
-        raise InputError((("list",), Sentence(N_("there is no such list of motors"))))
-    if not catalogue.motors:
-        said = Sentence(N_("there are no motors: list them in motors.csv of a catalogue supplement"))
-        raise InputError((("list",), said))
-    return entries_of(catalogue.motors)
 
 
 def _links(application: Application) -> Callable[[Application, str], str | None]:

@@ -217,6 +217,7 @@ FROM_MACHINE = _links("$request.path.id", *OF_A_MACHINE[1:])
 
 
 Id = Annotated[str, Path(description="Id from the reply to saving.")]
+ListId = Annotated[str, Path(description="Id of a list of motors; `server` for motors.csv.")]
 Revision = Annotated[
     str | None, Query(max_length=20, description="Label of a revision of the selection, in any case; else the latest.")
 ]
