@@ -62,16 +62,16 @@ def _text(markup: str) -> str:
     return " ".join(html.unescape(re.sub(r"<[^>]+>", "", markup)).split())
 
 
-GEAR, BOLTS = ("HPN-20A-5", None), "4 × M6 ⌀ 100 mm · {} Nm"
+GEAR, BOLTS = ("HPN-20A-5", None), "4 × M6, Ø 100 mm, {} Nm"
 
 FIGURES: dict[str, tuple[Json, str, tuple[str, str], tuple[str | None, str | None], list[str]]] = {
     "clamp_bolts": (
         *(ONE_RATIO, "clamp_bolts.csv", ("20A,M4,4.6", "20A,M4,5.1"), GEAR),
-        ["HPN-20A-5", "Bolt of the clamp on the motor shaft", "M4 · 4.6 Nm", "M4 · 5.1 Nm"],
+        ["HPN-20A-5", "Motor coupling bolt", "M4 4.6 Nm", "M4 5.1 Nm"],
     ),
     "housing_bolts": (
         *(ONE_RATIO, "housing_bolts.csv", ("20A,4,M6,100,10.1", "20A,4,M6,100,11"), GEAR),
-        ["HPN-20A-5", "Bolts of the housing flange", BOLTS.format("10.1"), BOLTS.format("11")],
+        ["HPN-20A-5", "Housing bolts", BOLTS.format("10.1"), BOLTS.format("11")],
     ),
     "inertia_kgm2": (
         *(WITH_MOTOR, "motors.csv", ("0.0005", "0.0004"), (None, "M 8")),

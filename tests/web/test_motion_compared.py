@@ -5,7 +5,6 @@ import re
 from starlette.testclient import TestClient
 
 from hpn.files.export import DIGITS
-from hpn.web.pages.saved import NAMES, phase_of
 from tests.build import TURNING, Json, cycle, phase
 
 
@@ -45,13 +44,6 @@ def test_a_link_to_a_motion_says_so(api: TestClient) -> None:
     page = api.get(f"/selections/{saved(api, TURNING)}").text
     described = re.search(r'<meta property="og:description" content="([^"]*)"', page)
     assert described and "motion of 8 load phases, load inertia 0.8 kg·m²" in described[1]
-
-
-def test_a_difference_in_a_phase_of_a_motion_says_which_and_what() -> None:
-    assert phase_of("/duty/phases/3/peak_torque_Nm") == 4
-    assert phase_of("/candidates/0/life_L10_h") is None
-    assert NAMES["peak_torque_Nm"] == "Peak torque"
-    assert NAMES["load_inertia_kgm2"] == "Inertia of the load"
 
 
 def test_a_saved_motion_is_shown_as_it_was_given_and_its_phases_with_the_digits_of_the_report(api: TestClient) -> None:

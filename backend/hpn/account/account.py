@@ -134,9 +134,10 @@ class Account:
     @cached_property
     def figures(self) -> list[Line]:
         """Figures of the gear under the cycle."""
-        return [self._figure(name) for name in FIGURES if self.candidate.says(name)]
+        return [self.figure(name) for name in FIGURES if self.candidate.says(name)]
 
-    def _figure(self, name: str) -> Line:
+    def figure(self, name: str) -> Line:
+        """One of these figures, which the candidate has to know."""
         named = CANDIDATE[name]
         if name == "position_error_arcmin" and self._is_at_rest:
             named = replace(named, name=N_("Position error at rest"))

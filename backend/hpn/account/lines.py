@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 from hpn.engine.notice import AREAS
@@ -71,12 +72,17 @@ class Line:
             return self.value if self.code in TYPED else reader.text(WORDS.get(self.value, self.value))
         return reader.value(self.value, self.unit)
 
-    def number(self, reader: Reader) -> str:
-        """The value as it is read, without its unit: a number, a range or words; blank where there is none."""
+    def number(self, reader: Reader, beside: Value | None = None) -> str:
+        """The value as it is read, without its unit: a number, a range or words; blank where there is none.
+
+        A rounded number has the digits that tell it from the one `beside` it.
+        """
         if not isinstance(self.value, float | int):
             return str(self.shown(reader) or "")
         printed = self.kind == "published" and reader.measure(self.unit).same
-        write = reader.exact if printed or self.kind == "entered" else reader.figure
+        other = beside if isinstance(beside, float | int) else None
+        exact = printed or self.kind == "entered"
+        write = reader.exact if exact else partial(reader.figure, beside=other)
         between = " … " if self.value < 0 else "–"
         until = "" if self.until is None else f"{between}{write(self.until, self.unit)}"
         return f"{self.sign}{' ' if self.sign else ''}{write(self.value, self.unit)}{until}"

@@ -5,8 +5,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeVar
 
 from hpn.account.lines import Line
+from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
-from hpn.words.quantities import GEAR
+from hpn.physics.equations import FloatArray
+from hpn.words.quantities import GEAR, MOTOR
 from hpn.words.source import source_sentence
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Named, Quantity, Sentence, listed
@@ -109,6 +111,43 @@ def _name(line: Line) -> str:
     return line.code.removeprefix("gear.")
 
 
+def whole(catalogue: Catalogue, designation: str) -> list[Line]:
+    """All that a catalogue says of a gear: figures, ranges as one line, bolts, curves and note; nothing without it."""
+    gear = catalogue.by_designation.get(designation)
+    if gear is None:
+        return []
+    return [
+        *ranged(published(gear)),
+        *bolts(gear),
+        *_curves(catalogue, gear),
+        *(Line(f"gear.{name}", GEAR[name], getattr(gear, name), kind="published") for name in ("stages", "note")),
+    ]
+
+
+def of_motor(catalogue: Catalogue, designation: str) -> list[Line]:
+    """Figures of a listed motor; nothing where the catalogue lacks it."""
+    motor = catalogue.motor_by_designation.get(designation)
+    names = [name for name in MOTOR if suffix_of(name)] if motor else []
+    return [Line(f"motor.{name}", MOTOR[name], getattr(motor, name), suffix_of(name), "published") for name in names]
+
+
+def _curves(catalogue: Catalogue, gear: Gear) -> Iterator[Line]:
+    """Points of the supplied curves of a gear."""
+    curve, efficiency = catalogue.curves.get(gear.size), catalogue.efficiency.get(gear.designation)
+    if curve is not None:
+        yield _points("gear.bearing_curve", N_("Points of the output bearing’s curve"), curve.axial_N, curve.radial_N)
+    if efficiency is not None:
+        yield _points("gear.efficiency_curve", N_("Points of the efficiency curve"), *efficiency)
+
+
+def _points(code: str, name: str, *columns: FloatArray) -> Line:
+    """Points of a curve as one line, their coordinates as they were supplied."""
+    points = [point for point in zip(*(column.tolist() for column in columns), strict=True)]
+    values = {f"x{at}_{axis}": Quantity(x, "", 12) for at, point in enumerate(points) for axis, x in enumerate(point)}
+    texts = (" / ".join(f"{{x{at}_{axis}}}" for axis in range(len(columns))) for at in range(len(points)))
+    return Line(code, Named(name), Sentence("; ".join(texts), values), kind="published")
+
+
 # --- Bolts ------------------------------------------------------------------------------------------------------------
 
 
@@ -122,9 +161,9 @@ def bolts(gear: Gear | None) -> list[Line]:
 
 def _housing_bolts(gear: Gear) -> Sentence | None:
     bolts = gear.housing_bolts
-    if bolts is None or bolts.bolt_size is None:
+    if bolts is None:
         return None
-    parts = [Sentence("{number} × {bolt}", {"number": bolts.number_of_bolts or "?", "bolt": bolts.bolt_size})]
+    parts = [Sentence("{number} × {bolt}", {"number": bolts.number_of_bolts or "?", "bolt": bolts.bolt_size or "?"})]
     if bolts.pitch_diameter_mm is not None:
         parts.append(Sentence("Ø\u00a0{diameter}", {"diameter": Quantity(bolts.pitch_diameter_mm, "mm", 4)}))
     if bolts.tightening_torque_Nm is not None:

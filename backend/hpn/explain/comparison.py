@@ -20,6 +20,7 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.candidates import Candidate
 from hpn.engine.selection import Selection
 from hpn.physics import equations
+from hpn.words.reader import NOTHING, Reader
 from hpn.words.wording import N_
 
 MOST_PINS = 4
@@ -86,6 +87,15 @@ class Row:
         """True for different values."""
         values = [(line.value, line.until) if line else (None, None) for line in self.lines]
         return not all(map(is_same, values[0], values[-1]))
+
+    def numbers(self, reader: Reader) -> tuple[str, str]:
+        """The first and the last value without their unit, as they are told apart; a dash for none."""
+        one, other = self.lines[0], self.lines[-1]
+        return _number(one, other, reader), _number(other, one, reader)
+
+
+def _number(line: Line | None, beside: Line | None, reader: Reader) -> str:
+    return (line.number(reader, beside.value if beside else None) or NOTHING) if line else NOTHING
 
 
 @dataclass(frozen=True, slots=True)

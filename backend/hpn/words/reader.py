@@ -127,19 +127,19 @@ class Reader:
 
         As printed if it is short, else to `digits`, but no digit before the decimal mark is lost: with three digits
         32.0210136 is `32.0`, 1167275.9 `1 167 276`. Hours are whole from 100 on, and above 100 million
-        `> 100 000 000`. It has the digits that tell it from the number `beside` it.
+        `> 100 000 000` unless that is `beside` it, too. It has the digits that tell it from the number `beside` it.
         """
         if value is None:
             return NOTHING
         measure = self.measure(unit)
         shown = measure.shown(value)
-        if unit == HOURS and shown > MOST_HOURS:
+        other = None if beside is None else measure.shown(beside)
+        if unit == HOURS and shown > MOST_HOURS and (other is None or other <= MOST_HOURS):
             return f">{GROUP}{self.written(str(MOST_HOURS))}"
         if _is_extreme(shown):
-            return self._scientific(f"{shown:.{self.digits - 1}e}")
+            return self._scientific(_told_apart(_exponential, shown, other, self.digits))
         is_whole = unit == HOURS and abs(shown) >= 100
         write, digits = (_decimals, 0) if is_whole else (_short, self.digits)
-        other = None if beside is None else measure.shown(beside)
         return self.written(_told_apart(write, shown, other, digits))
 
     def distinct(self, value: float, other: float | None, unit: str) -> str:
@@ -246,6 +246,10 @@ def _short(value: float, digits: int) -> str:
 
 def _decimals(value: float, decimals: int) -> str:
     return f"{value:.{decimals}f}"
+
+
+def _exponential(value: float, digits: int) -> str:
+    return f"{value:.{digits - 1}e}"
 
 
 def _told_apart(write: Callable[[float, int], str], value: float, other: float | None, digits: int) -> str:

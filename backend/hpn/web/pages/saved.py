@@ -1,8 +1,8 @@
 """The page of a saved selection, and a copy of it on the live page."""
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -11,14 +11,15 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
-from hpn.account.published import published, ranged
+from hpn.account import published
+from hpn.account.account import Account
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import read_ordering_code
-from hpn.engine.candidates import reason_of
 from hpn.engine.selection import Selection
-from hpn.explain.comparison import Row, is_number, rows_of
-from hpn.explain.differences import Difference, FigureDifference
+from hpn.explain.changes import ReplyChange
+from hpn.explain.comparison import Row, rows_of
+from hpn.explain.differences import FigureDifference
 from hpn.files.export import DIGITS
 from hpn.files.report.content import qr_code
 from hpn.store import ID, SavedSelection
@@ -30,32 +31,10 @@ from hpn.web.pages import calculator
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
 from hpn.web.pages.saving import REASON
-from hpn.words.quantities import CANDIDATE, CHECK, DUTY, GEAR, MOTOR, PHASE, RESERVE
-from hpn.words.terms import VERDICTS
-from hpn.words.units import symbol_of
 from hpn.words.wording import N_, Sentence
 
 DIFFERENCES_ON_PAGE, MOST_ROWS = 100, 100
 """Differences, and rows of a table of inputs, that the page shows."""
-
-NAMES: Mapping[str, str] = {
-    "selected": N_("Selected gear"),
-    "text": N_("Notice"),
-    **{field: named.name for table in (PHASE, DUTY, RESERVE, CHECK, CANDIDATE) for field, named in table.items()},
-    "load_inertia_kgm2": N_("Inertia of the load"),
-}
-"""Fields of a reply in words; any other stands with its own name."""
-
-SHARES = ("utilisation", "torque_factor", "speed_factor", "load_factor")
-"""Fields that are read as percentages."""
-
-FIGURES: Mapping[str, str] = {
-    "clamp_bolts": N_("Bolt of the clamp on the motor shaft"),
-    "housing_bolts": N_("Bolts of the housing flange"),
-    "bearing_curve": N_("Points of the output bearing’s curve"),
-    "efficiency_curve": N_("Points of the efficiency curve"),
-}
-"""Published figures of a gear that are more than a number."""
 
 EXPORTS = (
     ("report.pdf", N_("PDF report"), "report"),
@@ -93,44 +72,26 @@ def _copied(request: Request, reopened: Reopened) -> Response:
 # --- What the page shows ----------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class ChangedField:
-    """One difference, ready to read."""
-
-    candidate: str | None
-    check: str | None
-    phase: int | None
-    field: str
-    unit: str
-    verdict: bool
-    saved: str
-    today: str
-    worded: bool = False
-    """True for a sentence that only reads otherwise: about a check, a notice, why a gear does not fit."""
-
-
 def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[str, Any]:
-    application = reopened.application
+    application, reader = reopened.application, current()
     answer = result_of(reopened.saved, reopened.selection, application, reopened.then, designation)
-    changed = [_line(difference, reopened) for difference in reopened.differences[:DIFFERENCES_ON_PAGE]]
+    today = Account(reopened.today, reopened.today.foremost, application, catalogue) if reopened.today else None
+    accounts = answer.account, today
+    changes = [ReplyChange(one, accounts, reader) for one in reopened.differences[:DIFFERENCES_ON_PAGE]]
     return {
         "reopened": reopened,
         "answer": answer,
-        "lines": [line for line in changed if not line.worded],
-        "worded": [line for line in changed if line.worded],
+        "lines": [change for change in changes if not change.is_wording],
+        "worded": [change for change in changes if change.is_wording],
         "catalogue_version": catalogue.version,
         "published": _published(reopened.then, catalogue, answer.chosen.designation),
-        "changed_figures": [
-            _figure_line(difference)
-            for difference in reopened.figures or ()
-            if difference.field != "designation" and difference.candidate in (None, answer.chosen.designation)
-        ],
+        "changed_figures": _changed_figures(reopened, catalogue, answer.chosen.designation),
         "changed_gears": _gears(reopened.figures, gone=False),
         "gone_gears": _gears(reopened.figures, gone=True),
         "ordering": _ordering(reopened.saved, catalogue),
         "engine_version": ENGINE_VERSION,
         "document": reopened.saved.application.decode(),
-        "filed": replace(current(), digits=DIGITS),
+        "filed": replace(reader, digits=DIGITS),
         "most_rows": MOST_ROWS,
         "exports": EXPORTS,
         "longest_link": MAXIMUM_QUERY_BYTES,
@@ -159,7 +120,18 @@ def result_of(
 def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[Row]:
     """Published figures of a gear then and today; none where the catalogue of then is lost."""
     gears = [one.by_designation.get(designation) if one else None for one in (then, today)]
-    return rows_of(*(ranged(published(gear)) for gear in gears)) if gears[0] else []
+    return rows_of(*(published.ranged(published.published(gear)) for gear in gears)) if gears[0] else []
+
+
+def _changed_figures(reopened: Reopened, today: Catalogue, gear: str) -> list[tuple[str, Row]]:
+    """Published figures of a gear and of the listed motor that differ, with the designation of either."""
+    if reopened.then is None:
+        return []
+    catalogues, motor = (reopened.then, today), reopened.application and reopened.application.requirements.motor
+    sides = [(gear, [published.whole(catalogue, gear) for catalogue in catalogues])]
+    if motor and (name := motor.designation):
+        sides.append((name, [published.of_motor(catalogue, name) for catalogue in catalogues]))
+    return [(owner, row) for owner, lines in sides if all(lines) for row in rows_of(*lines) if row.differs]
 
 
 def _gears(figures: Sequence[FigureDifference] | None, *, gone: bool) -> list[str]:
@@ -178,112 +150,9 @@ def _ordering(saved: SavedSelection, catalogue: Catalogue) -> str:
     return code if code and isinstance(read_ordering_code(catalogue, code), Sentence) else ""
 
 
-def _figure_line(difference: FigureDifference) -> ChangedField:
-    """A published figure of a gear or motor, ready to read."""
-    table, unit = MOTOR if difference.motor else GEAR, symbol_of(difference.field)
-    name = FIGURES.get(difference.field) or table[difference.field].name
-    saved, today = _both(difference.saved, difference.today, unit) or (
-        _figure_text(value, unit) for value in (difference.saved, difference.today)
-    )
-    return ChangedField(difference.motor or difference.candidate, "", None, name, unit, False, saved, today)
-
-
-_BOLTS = {"number_of_bolts": "{} ×", "pitch_diameter_mm": "⌀ {}", "tightening_torque_Nm": "· {}"}
-"""Formats of the figures of bolts, beside the thread and its torque."""
-
-
-def _figure_text(value: Any, unit: str) -> str:
-    """A published figure in the reader's language: a number, bolts such as 4 × M6, or the points of a curve."""
-    reader = current()
-    if isinstance(value, str):
-        return value
-    if isinstance(value, dict):
-        given = {name: _figure_text(part, symbol_of(name)) for name, part in value.items() if part is not None}
-        return " ".join(_BOLTS.get(name, "{}").format(text) for name, text in given.items())
-    if isinstance(value, list):
-        return (" / " if all(map(is_number, value)) else "; ").join(_figure_text(part, unit) for part in value)
-    return reader.with_unit(reader.figure(value, unit), unit)
-
-
 def _number(designation: str) -> list[int]:
     """Sort key of gears: size, then ratio."""
     return [int(digits) for digits in re.findall(r"\d+", designation)]
-
-
-def _line(difference: Difference, reopened: Reopened) -> ChangedField:
-    definitions = reopened.selection.check_definitions
-    titles = {code: definition.title for code, definition in definitions.items()}
-    own = difference.check in definitions and difference.field in ("demand", "limit")
-    unit = definitions[difference.check or ""].unit if own else symbol_of(difference.field)
-    given = difference.saved, difference.today
-    if difference.field in SHARES:
-        unit, given = "%", tuple(100 * value if is_number(value) else value for value in given)
-    saved, today = _both(*given, unit) or (
-        _text(value, difference, selection, reopened, unit)
-        for value, selection in zip(given, (reopened.selection, reopened.today), strict=True)
-    )
-    worded = difference.change == "changed" and _is_wording(difference, reopened)
-    if saved == today and all(isinstance(value, str) for value in given):  # told alike today, so as each was written
-        worded, (saved, today) = True, given
-    return ChangedField(
-        candidate=difference.candidate,
-        check=titles.get(difference.check or "", difference.check or ""),
-        phase=phase_of(difference.pointer),
-        field=NAMES.get(difference.field, difference.field),
-        unit=unit,
-        verdict=difference.kind == "verdict",
-        saved=saved,
-        today=today,
-        worded=worded,
-    )
-
-
-def _is_wording(difference: Difference, reopened: Reopened) -> bool:
-    """True for a sentence about a check, and for a notice with the same values."""
-    notices = (*reopened.selection.notices, *(reopened.today.notices if reopened.today else ()))
-    values = {notice.text: notice.values for notice in notices}
-    before, after = (values.get(str(text)) for text in (difference.saved, difference.today))
-    return difference.pointer.startswith("/check_definitions/") or (before is not None and before == after)
-
-
-def phase_of(pointer: str) -> int | None:
-    """Number of the load phase that a JSON pointer leads to; None for any other place."""
-    parts = pointer.split("/")
-    return int(parts[3]) + 1 if parts[1:3] == ["duty", "phases"] else None
-
-
-def _text(value: Any, difference: Difference, selection: Selection | None, reopened: Reopened, unit: str) -> str:
-    """A value of a difference in the reader's language; what its version kept no values of, as it was written."""
-    reader = current()
-    if value is None or selection is None:
-        whole = difference.change != "changed" and difference.field == "status" and difference.check is None
-        return reader.text(N_("no candidate")) if whole and selection is not None else "–"
-    if is_number(value):
-        return reader.figure(value, unit)
-    candidate = selection.candidate(difference.candidate or "")
-    if difference.field == "reason" and candidate is not None and reopened.application is not None:
-        return reader.told(reason_of(candidate, reopened.application.requirements.utilisation))
-    if notice := next((notice for notice in selection.notices if notice.text == value), None):
-        return reader.told(notice.sentence)
-    definition = selection.check_definitions.get(value)
-    return reader.text(definition.title if definition else VERDICTS.get(value, str(value)))
-
-
-def _both(saved: Any, today: Any, unit: str) -> tuple[str, str] | None:
-    """Two numbers for reading; None where one is none."""
-    return _told_apart(saved, today, unit) if is_number(saved) and is_number(today) else None
-
-
-def _told_apart(saved: float, today: float, unit: str) -> tuple[str, str]:
-    """Two numbers for reading, with as many digits as it takes to tell them apart."""
-    reader = current()
-    before, after = reader.figure(saved, unit), reader.figure(today, unit)
-    if before == after:
-        measure = reader.measure(unit)
-        pairs = ((measure.written(saved, digits), measure.written(today, digits)) for digits in range(3, 18))
-        first, second = next((pair for pair in pairs if len(set(pair)) == 2), ("", ""))
-        return (reader.written(first), reader.written(second)) if first else (before, after)
-    return before, after
 
 
 router = APIRouter(include_in_schema=False)
