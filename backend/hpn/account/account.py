@@ -251,10 +251,10 @@ class Account:
         if self.selection.adds_at_motor:
             return any(notice.code == "efficiency_supplied" for notice in self.selection.notices)
         duty, candidate = Duty.of([self.application]), self.candidate
-        shown = np.array([candidate.motor_peak_torque_Nm, candidate.motor_rated_torque_Nm], dtype=np.float64)
+        torques = np.array([candidate.motor_peak_torque_Nm, candidate.motor_rated_torque_Nm], dtype=np.float64)
         output = np.array([duty.maximum_torque_Nm.item(), duty.rms_torque_Nm.item()])
         loss_free = equations.motor_torque(output_torque_Nm=output, ratio=candidate.ratio, efficiency=1.0)
-        return bool((np.abs(shown - loss_free) > 1e-9 * loss_free).any())
+        return bool((np.abs(torques - loss_free) > 1e-9 * loss_free).any())
 
 
 def _computed(code: str, named: Named, value: float | str | None, kind: Kind = "computed") -> Line:

@@ -113,8 +113,8 @@ class OverTolerance:
         return corners_of(self.application, gear, catalogue, [line.code for line in self.account.checks])
 
     def _worst(self, line: CheckLine, corner: Corner | None) -> WorstLine:
-        asked, worst, exact = self.application.requirements, line.result.worst, line.result.exact
-        u = asked.worst_case_utilisation or asked.utilisation
+        requirements, worst, exact = self.application.requirements, line.result.worst, line.result.exact
+        u = requirements.worst_case_utilisation or requirements.utilisation
         reading = None
         if corner is not None:
             account = self.account
@@ -141,9 +141,9 @@ class OverTolerance:
     def room(self) -> Room | None:
         """Growth and deciding inputs; those of the answer where it has them."""
         account = self.account
-        kept = account.selection.tolerance
-        if isinstance(kept, Room) and account.candidate.designation == account.selection.selected:
-            return kept
+        tolerance = account.selection.tolerance
+        if isinstance(tolerance, Room) and account.candidate.designation == account.selection.selected:
+            return tolerance
         if account.gear is None or account.catalogue is None or account.equipped is None:
             return None
         return room_of(self.application, account.equipped, account.gear, account.catalogue, lambda _: "")
@@ -153,13 +153,13 @@ class OverTolerance:
         """Inputs without whose tolerance the worst case falls, the greatest fall first."""
         by_path = {line.path: line for line in self.given}
         gear, catalogue = self.account.gear, self.account.catalogue
-        found = []
+        lines = []
         for one in self.room.deciding if self.room else ():
             factor = None
             if gear is not None and catalogue is not None:
                 factor = allowed_of(self.application, gear, catalogue, one.path)
-            found.append(DecidingLine(by_path[one.path], one.worst, factor))
-        return found
+            lines.append(DecidingLine(by_path[one.path], one.worst, factor))
+        return lines
 
     @cached_property
     def share(self) -> Share | None:
@@ -275,16 +275,18 @@ def symbols_of(moved: Sequence[Interval], every: Iterable[Interval]) -> tuple[st
     for one in every:
         if len(one.place) > 2 and isinstance(one.place[-2], int):
             rows.setdefault(str(one.place[-1]), []).append(one.place[-2])
-    found: list[str] = []
+    symbols: list[str] = []
     for one in moved:
         field = str(one.place[-1])
         if len(one.place) > 2 and isinstance(one.place[-2], int):
             same = [each.place[-2] for each in moved if each.place[-1] == field and isinstance(each.place[-2], int)]
             named = INPUTS[f"phase.{field}"] if one.place[0] == "phases" else _of_move(field)
             whole = len(same) == len(rows[field]) > 1
-            found.append(named.symbol or named.name if whole else _numbered(named, one.place[-2]).symbol or named.name)
+            symbols.append(
+                named.symbol or named.name if whole else _numbered(named, one.place[-2]).symbol or named.name
+            )
         else:
             path = ".".join(map(str, one.place)).removeprefix("duty_cycle.")
             named = _single(path)
-            found.append(named.symbol or named.name)
-    return tuple(dict.fromkeys(found))
+            symbols.append(named.symbol or named.name)
+    return tuple(dict.fromkeys(symbols))

@@ -242,44 +242,51 @@ class Application(Model):
 
     @field_validator("requirements")
     @classmethod
-    def _knows_its_inertias(cls, asked: Requirements, info: ValidationInfo) -> Requirements:
+    def _knows_its_inertias(cls, requirements: Requirements, info: ValidationInfo) -> Requirements:
         motion = info.data["duty_cycle"].motion if "duty_cycle" in info.data else None
-        motor, given = asked.motor or Motor(), asked.load_inertia_kgm2 is not None
-        if motion is not None and given:
+        motor, has_inertia = requirements.motor or Motor(), requirements.load_inertia_kgm2 is not None
+        if motion is not None and has_inertia:
             problem = PydanticCustomError("inertia_twice", "the load’s inertia follows from the motion: leave it out")
-            raise refused(asked, (("load_inertia_kgm2",), problem))
+            raise refused(requirements, (("load_inertia_kgm2",), problem))
         if "duty_cycle" not in info.data:
-            return asked
+            return requirements
         ratio = ("motor", "inertia_ratio")
         of_list = motor.designation is not None or "motors" in (info.context or {})
         if motor.inertia_ratio is not None and motor.inertia_kgm2 is None and not of_list:
-            raise refused(asked, (ratio, PydanticCustomError("inertia_of_motor", "needs the motor’s inertia_kgm2")))
-        needing = {ratio: motor.inertia_ratio, ("natural_frequency_Hz",): asked.natural_frequency_Hz}
+            raise refused(
+                requirements, (ratio, PydanticCustomError("inertia_of_motor", "needs the motor’s inertia_kgm2"))
+            )
+        needing = {ratio: motor.inertia_ratio, ("natural_frequency_Hz",): requirements.natural_frequency_Hz}
         places = [place for place, value in needing.items() if value is not None]
-        if places and motion is None and not given:
+        if places and motion is None and not has_inertia:
             problem = PydanticCustomError("inertia_of_load", "needs a motion, or requirements.load_inertia_kgm2")
-            raise refused(asked, *((place, problem) for place in places))
-        return asked
+            raise refused(requirements, *((place, problem) for place in places))
+        return requirements
 
     @field_validator("requirements")
     @classmethod
-    def _knows_its_rest(cls, asked: Requirements, info: ValidationInfo) -> Requirements:
+    def _knows_its_rest(cls, requirements: Requirements, info: ValidationInfo) -> Requirements:
         if "duty_cycle" not in info.data:
-            return asked
+            return requirements
         cycle: DutyCycle = info.data["duty_cycle"]
-        if cycle.motion is not None and asked.rest_friction_Nm:
+        if cycle.motion is not None and requirements.rest_friction_Nm:
             problem = PydanticCustomError("friction_twice", "friction at rest follows from the motion: leave it out")
-            raise refused(asked, (("rest_friction_Nm",), problem))
-        if asked.position_error_at == "rest" and not cycle.rests:
+            raise refused(requirements, (("rest_friction_Nm",), problem))
+        if requirements.position_error_at == "rest" and not cycle.rests:
             problem = PydanticCustomError("no_rest", "needs a phase with speed 0, a dwell or a pause")
-            raise refused(asked, (("position_error_at",), problem))
-        return asked
+            raise refused(requirements, (("position_error_at",), problem))
+        return requirements
 
     @field_validator("rank_by")
     @classmethod
     def _has_what_it_ranks_by(cls, rank_by: RankBy, info: ValidationInfo) -> RankBy:
-        cycle, asked = info.data.get("duty_cycle"), info.data.get("requirements")
-        known = cycle is None or asked is None or cycle.motion is not None or asked.load_inertia_kgm2 is not None
+        cycle, requirements = info.data.get("duty_cycle"), info.data.get("requirements")
+        known = (
+            cycle is None
+            or requirements is None
+            or cycle.motion is not None
+            or requirements.load_inertia_kgm2 is not None
+        )
         if rank_by == "natural_frequency" and not known:
             raise PydanticCustomError("inertia_of_load", "needs a motion, or requirements.load_inertia_kgm2")
         return rank_by

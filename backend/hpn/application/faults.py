@@ -78,10 +78,10 @@ def plain_faults(entries: Sequence[ErrorDetails]) -> list[Fault]:
 def _told(entries: Sequence[ErrorDetails]) -> list[tuple[Location, Sentence, str]]:
     # A list whose items are wrong is also reported as too short; the items say it better.
     items = {entry["loc"][:end] for entry in entries for end in range(len(entry["loc"]))}
-    kept = [entry for entry in entries if entry["type"] != "too_short" or entry["loc"] not in items]
-    told = [sentence_of(entry) for entry in kept[:MOST_TOLD]]
-    told += [_plain_sentence(entry) for entry in kept[MOST_TOLD:]]
-    return [(entry["loc"], sentence, entry["type"]) for entry, sentence in zip(kept, told, strict=True)]
+    singles = [entry for entry in entries if entry["type"] != "too_short" or entry["loc"] not in items]
+    sentences = [sentence_of(entry) for entry in singles[:MOST_TOLD]]
+    sentences += [_plain_sentence(entry) for entry in singles[MOST_TOLD:]]
+    return [(entry["loc"], sentence, entry["type"]) for entry, sentence in zip(singles, sentences, strict=True)]
 
 
 MOST_TOLD = 100
@@ -116,9 +116,9 @@ def _plain_sentence(entry: ErrorDetails) -> Sentence:
         "expected": str(context.get("expected"))[1:-1],
     }
     if template := BOUNDS.get(entry["type"]):
-        told = Sentence(template, {name: value for name, value in values.items() if f"{{{name}}}" in template})
-        if told.text == text:  # pydantic has a singular, and says more where it knows more
-            return told
+        sentence = Sentence(template, {name: value for name, value in values.items() if f"{{{name}}}" in template})
+        if sentence.text == text:  # pydantic has a singular, and says more where it knows more
+            return sentence
     return Sentence("{text}", {"text": text}, ("text",))
 
 

@@ -63,8 +63,8 @@ class _Motion(Model):
         if not values[place] <= BOUNDS[code]:
             self._refuse(code, float(values[place]), BOUNDS[code], unit, place if move is None else int(move[place]))
 
-    def _refuse(self, code: str, found: float, bound: float, unit: str, *move: int) -> NoReturn:
-        said = {"found": str(Quantity(found, unit, 9, "up")), "bound": str(Quantity(bound, unit, 9))}
+    def _refuse(self, code: str, value: float, bound: float, unit: str, *move: int) -> NoReturn:
+        said = {"found": str(Quantity(value, unit, 9, "up")), "bound": str(Quantity(bound, unit, 9))}
         raise refused(self, (("moves", *move), refusal(code, **said)))
 
     @cached_property

@@ -36,13 +36,13 @@ class MotorEntry(Model):
 
     @model_validator(mode="after")
     def _is_in_order(self) -> Self:
-        found = [
+        errors = [
             ((low,), PydanticCustomError("motor_order", "is above {high}", {"high": high}))
             for low, high in _IN_ORDER
             if (getattr(self, low) or 0.0) > (getattr(self, high) or float("inf"))
         ]
-        if found:
-            raise refused(self, *found)
+        if errors:
+            raise refused(self, *errors)
         return self
 
 

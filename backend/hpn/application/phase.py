@@ -63,8 +63,8 @@ class Phase(Model):
     def _within_the_peak(cls, rms: float | None, info: ValidationInfo) -> float | None:
         if rms is None or not {"torque_Nm", "peak_torque_Nm"} <= info.data.keys():
             return rms
-        given, own = info.data["peak_torque_Nm"], info.data["torque_Nm"]
-        peak = abs(own) if given is None else given
+        outer, own = info.data["peak_torque_Nm"], info.data["torque_Nm"]
+        peak = abs(own) if outer is None else outer
         if rms > peak * (1 + ROOM):
             raise PydanticKnownError("less_than_equal", {"le": peak})
         return rms

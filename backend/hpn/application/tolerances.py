@@ -291,14 +291,14 @@ OWN = ("peak_torque_Nm", "rms_torque_Nm", "least_torque_Nm", "peak_speed_rpm")
 STOP = ("emergency_stop", "brake")
 
 
-def _contradictions(application: Any, found: Mapping[Place, Interval]) -> Iterator[tuple[Place, Any]]:
+def _contradictions(application: Any, intervals: Mapping[Place, Interval]) -> Iterator[tuple[Place, Any]]:
     """Errors of intervals in which inputs that hold each other would contradict themselves."""
-    for place, interval in found.items():
+    for place, interval in intervals.items():
         if place[0] == "phases" and place[2] in OWN:
             number = int(place[1])
-            yield from _of_phase(application.duty_cycle.phases[number], number, interval, found)
+            yield from _of_phase(application.duty_cycle.phases[number], number, interval, intervals)
     names = ("load_torque_Nm", "opposing_torque_Nm")
-    load, opposing = (found.get((*STOP, name)) for name in names)
+    load, opposing = (intervals.get((*STOP, name)) for name in names)
     stop = application.emergency_stop
     if (own := load or opposing) and stop.brake.opposing_torque_Nm is not None:
         high = load.high if load else stop.brake.load_torque_Nm or 0.0
@@ -307,14 +307,16 @@ def _contradictions(application: Any, found: Mapping[Place, Interval]) -> Iterat
             yield (own.path,), _held(names[1], names[0])
 
 
-def _of_phase(phase: Phase, number: int, own: Interval, found: Mapping[Place, Interval]) -> Iterator[tuple[Place, Any]]:
+def _of_phase(
+    phase: Phase, number: int, own: Interval, intervals: Mapping[Place, Interval]
+) -> Iterator[tuple[Place, Any]]:
     """Errors of a phase one of whose peaks, RMS or least torque has a tolerance of its own."""
 
     def ends(name: str) -> tuple[float, float]:
-        interval = found.get(("phases", number, name))
+        interval = intervals.get(("phases", number, name))
         value = abs(getattr(phase, name))
         if interval is None:
-            moving = found.get(("phases", number, name.partition("_")[2]))
+            moving = intervals.get(("phases", number, name.partition("_")[2]))
             return moved_by(moving, value, is_least=name == "least_torque_Nm") if moving else (value, value)
         magnitudes = abs(interval.low), abs(interval.high)
         return 0.0 if interval.low < 0 < interval.high else min(magnitudes), max(magnitudes)

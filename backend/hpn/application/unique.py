@@ -16,8 +16,8 @@ class RepeatedNameError(InputError):
 
     def __init__(self, name: str, count: int) -> None:
         self.name = name[:MOST_SHOWN]
-        given = {"name": repr(self.name), "count": str(count)}
-        super().__init__(((), Sentence(N_("contains the name {name} {count} times in one object"), given)))
+        values = {"name": repr(self.name), "count": str(count)}
+        super().__init__(((), Sentence(N_("contains the name {name} {count} times in one object"), values)))
 
 
 def require_unique(content: bytes) -> None:

@@ -118,9 +118,9 @@ def merge(rows: dict[Key, Cells], supplement: dict[Key, Cells]) -> dict[Key, Cel
     """Fill or correct cells of `rows` by those of a supplement; a blank cell keeps what was there."""
     merged = dict(rows)
     for key, cells in supplement.items():
-        kept = merged.get(key, {})
-        given = {column: cell for column, cell in cells.items() if cell.text or column not in kept}
-        merged[key] = kept | given
+        before = merged.get(key, {})
+        texts = {column: cell for column, cell in cells.items() if cell.text or column not in before}
+        merged[key] = before | texts
     return merged
 
 
@@ -149,9 +149,9 @@ def _text(path: Path, content: bytes) -> str:
         place = _place(content[: error.start].decode())
         detail = f"byte {content[error.start]:#04x} is not UTF-8 text; save the file as UTF-8"
         raise CatalogueError(path, *place, detail) from None
-    if found := UNPRINTABLE.search(text):
-        detail = f"the character U+{ord(found[0]):04X} does not belong in a table; save the file as UTF-8 text"
-        raise CatalogueError(path, *_place(text[: found.start()]), detail)
+    if character := UNPRINTABLE.search(text):
+        detail = f"the character U+{ord(character[0]):04X} does not belong in a table; save the file as UTF-8 text"
+        raise CatalogueError(path, *_place(text[: character.start()]), detail)
     return text
 
 
@@ -196,9 +196,9 @@ def _lines(
                 detail = f"the cell has more than {LONGEST_CELL} characters"
                 raise CatalogueError(path, reader.line_num, place, detail)
             texts = [_in_wire(row[index], columns[k], codes[index]) for k, index in enumerate(order)]
-            for column, found in zip(columns, texts, strict=True):
-                if isinstance(found, Sentence):
-                    raise CatalogueError(path, reader.line_num, column, found.text)
+            for column, part in zip(columns, texts, strict=True):
+                if isinstance(part, Sentence):
+                    raise CatalogueError(path, reader.line_num, column, part.text)
             yield reader.line_num, dict(zip(columns, map(str, texts), strict=True)) | dict.fromkeys(lacking, "")
     except csv.Error as error:
         detail = {"unexpected end of data": "a quote is opened and not closed"}.get(str(error), str(error))

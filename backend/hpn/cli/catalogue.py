@@ -19,12 +19,12 @@ def run(options: argparse.Namespace) -> int:
             mark = " (supplied by the user)" if gear.is_supplied("rated_torque_Nm") else ""
             print(f"{gear.designation:<11} {gear.stages}-stage  {rated}{mark}")
         return 0
-    found = catalogue.find(options.designation)
-    if found is None:
+    figures = catalogue.find(options.designation)
+    if figures is None:
         print(
             f"the catalogue has no gear {options.designation!r}; a designation is written like HPN-20A-5",
             file=sys.stderr,
         )
         return 2
-    print(msgspec.json.format(msgspec.json.encode(found)).decode())
+    print(msgspec.json.format(msgspec.json.encode(figures)).decode())
     return 0

@@ -93,9 +93,9 @@ async def _copy_of(store: Store, machine: Machine) -> bytes:
     """JSON of a machine as GET gives it, with its revisions, the first one first."""
     copies = []
     for line in reversed(await store.revisions(machine.id)):
-        found = await store.revision(machine.id, line.label)
-        assert found is not None
-        copies.append(replies.frozen(line, revision.decode(found[1])))
+        content = await store.revision(machine.id, line.label)
+        assert content is not None
+        copies.append(replies.frozen(line, revision.decode(content[1])))
     whole = msgspec.structs.asdict(replies.machine(machine))
     return msgspec.json.format(encode({**whole, "revisions": copies}), indent=1)
 
@@ -128,10 +128,10 @@ def _draft(options: argparse.Namespace, content: bytes, catalogue: Catalogue) ->
     require("fleet")
     from hpn.web.axis_tables import WANTED  # needs Arrow
 
-    read, faults = read_answered(content, WANTED, options.answer)
+    table, faults = read_answered(content, WANTED, options.answer)
     if faults:
         raise MachineError("\n".join(f"--answer {fault.text}" for fault in faults))
-    drafts = sizing_of(read, catalogue)()
+    drafts = sizing_of(table, catalogue)()
     return MachineDraft(drafts, ENGINE_VERSION, catalogue.version, title=options.title)
 
 

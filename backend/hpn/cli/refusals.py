@@ -49,7 +49,7 @@ def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> list
     for entry in error.errors(include_url=False, include_context=False, include_input=False):
         text = sentence_of(entry).text
         for name in map(str, entry["loc"][:1]):
-            given = f"--{name}" if getattr(options, name, None) is not None else source_of(name)
-            text = f"{given}: {text}"
+            source = f"--{name}" if getattr(options, name, None) is not None else source_of(name)
+            text = f"{source}: {text}"
         lines.append(text)
     return list(dict.fromkeys(lines))

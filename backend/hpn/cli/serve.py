@@ -14,8 +14,8 @@ from hpn.web.settings import Settings
 
 def run(options: argparse.Namespace) -> int:
     """Serve until a signal says otherwise; a wrong catalogue or database stops here, with its place."""
-    given = {name: getattr(options, name) for name in ("host", "port", "workers")}
-    settings = Settings(**{name: value for name, value in given.items() if value is not None})
+    values = {name: getattr(options, name) for name in ("host", "port", "workers")}
+    settings = Settings(**{name: value for name, value in values.items() if value is not None})
     load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     _require_free(settings.host, settings.port)  # first: beside a service that runs, its database stays as it is
     asyncio.run(_migrate(Store(**settings.database())))

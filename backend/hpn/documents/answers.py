@@ -162,22 +162,22 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
     )
 
 
-def answer_of(selection: Selection, shown: Candidate, catalogue: Catalogue) -> AxisAnswer:
+def answer_of(selection: Selection, candidate: Candidate, catalogue: Catalogue) -> AxisAnswer:
     """The same out of a whole selection, for the candidate that is shown first."""
     suitable = [each.designation for each in selection.candidates if each.status == "suitable"]
-    worst = None if shown.worst is UNSET else shown.worst
+    worst = None if candidate.worst is UNSET else candidate.worst
     return AxisAnswer(
-        status=shown.status,
+        status=candidate.status,
         selected=selection.selected,
-        designation=shown.designation,
-        governing_check=shown.governing_check,
-        utilisation=shown.utilisation,
-        life_L10_h=shown.life_L10_h,
-        shortest_life_h=shown.shortest_life_h,
-        shortest_life_of=shown.shortest_life_of,
-        natural_frequency_Hz=shown.natural_frequency_Hz,
-        motor_torque_limit_Nm=shown.motor_torque_limit_Nm,
-        weight_kg=catalogue.by_designation[shown.designation].weight_kg,
+        designation=candidate.designation,
+        governing_check=candidate.governing_check,
+        utilisation=candidate.utilisation,
+        life_L10_h=candidate.life_L10_h,
+        shortest_life_h=candidate.shortest_life_h,
+        shortest_life_of=candidate.shortest_life_of,
+        natural_frequency_Hz=candidate.natural_frequency_Hz,
+        motor_torque_limit_Nm=candidate.motor_torque_limit_Nm,
+        weight_kg=catalogue.by_designation[candidate.designation].weight_kg,
         suitable=len(suitable),
         runner_up=suitable[1] if len(suitable) > 1 else None,
         average_torque_Nm=selection.duty.average_torque_Nm,

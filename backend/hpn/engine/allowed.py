@@ -110,11 +110,11 @@ def with_listed_motor(application: Application, catalogue: Catalogue) -> Applica
 
     Raises InputError for a motor that is not listed, and for one without the inertia that an inertia ratio needs.
     """
-    asked = application.requirements.motor
-    if asked is None or asked.designation is None:
+    typed = application.requirements.motor
+    if typed is None or typed.designation is None:
         return application
     place = ("requirements", "motor", "designation")
-    listed = catalogue.motor_by_designation.get(asked.designation)
+    listed = catalogue.motor_by_designation.get(typed.designation)
     if listed is None:
         names = list(catalogue.motor_by_designation)
         if not names:
@@ -122,12 +122,12 @@ def with_listed_motor(application: Application, catalogue: Catalogue) -> Applica
                 (place, Sentence(N_("there are no motors: list them in motors.csv of a catalogue supplement")))
             )
         more = ["…"] if len(names) > MOTORS_NAMED else []
-        values: dict[str, Value] = {"value": asked.designation, "listed": ", ".join(names[:MOTORS_NAMED] + more)}
+        values: dict[str, Value] = {"value": typed.designation, "listed": ", ".join(names[:MOTORS_NAMED] + more)}
         raise InputError((place, Sentence(NOT_THERE, values)))
-    if asked.inertia_ratio is not None and listed.inertia_kgm2 is None:
+    if typed.inertia_ratio is not None and listed.inertia_kgm2 is None:
         raise InputError(
             (place, Sentence(N_("inertia_ratio needs the inertia of this motor, which motors.csv does not give")))
         )
-    motor = asked.model_copy(update={name: getattr(listed, name) for name in LISTED_FIGURES})
+    motor = typed.model_copy(update={name: getattr(listed, name) for name in LISTED_FIGURES})
     requirements = application.requirements.model_copy(update={"motor": motor})
     return application.model_copy(update={"requirements": requirements})

@@ -177,18 +177,18 @@ FIGURES = tuple(
 
 def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     """Candidates of an application, best first."""
-    order, asked = evaluation.order[index], evaluation.asked_by(index)
+    order, places = evaluation.order[index], evaluation.asked_by(index)
     codes = [check.code for check in evaluation.checks]
     u = evaluation.case.asked["requirements.utilisation"].item(index)
     figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
     tables = (evaluation.demand, evaluation.limit, evaluation.shown)
-    terms = (table[place, index] for place in asked for table in tables)
+    terms = (table[place, index] for place in places for table in tables)
     columns = iter(
         _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
     )
     used, values = next(columns), zip(*islice(columns, len(FIGURES)), strict=True)
     reserve = map(Reserve, *islice(columns, len(Reserve.__struct_fields__)))
-    states = [map(CHECK_STATUS.__getitem__, row) for row in evaluation.status[asked, index][:, order].tolist()]
+    states = [map(CHECK_STATUS.__getitem__, row) for row in evaluation.status[places, index][:, order].tolist()]
     lacks, bounded = evaluation.lacks_input[index].tolist(), bool(np.isfinite(evaluation.at_least[:, index]).any())
     limits = np.select([lacks, evaluation.by_lower_bound[index]], ["missing", "at_least"], "").tolist()
     worst = evaluation.worst if evaluation.worst is not None and evaluation.worst.given[index] else None
@@ -203,7 +203,7 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
             *(_columns([evaluation.at_least[place, index]], order) if bounded or worst else ()),
             *(_worst_of(worst, place, index, order) if worst else ()),
         )
-        for place, state in zip(asked, states, strict=True)
+        for place, state in zip(places, states, strict=True)
     ]
     cases: Iterable[WorstCase | UnsetType] = _worst_cases(worst, index, order) if worst else repeat(UNSET)
     rows = zip(used, values, reserve, zip(*checks, strict=True), strict=True)

@@ -138,10 +138,10 @@ class InputArrays:
 SHAFT_CENTRE = "output_load.shaft_centre_mm"
 
 
-def _by_size(given: Sequence[Mapping[str, float]]) -> Mapping[str, FloatArray]:
+def _by_size(tables: Sequence[Mapping[str, float]]) -> Mapping[str, FloatArray]:
     """Numbers of N applications by size, each of shape (N, 1): NaN where an application has none of it."""
-    sizes = dict.fromkeys(size for one in given for size in one)
-    return {size: np.array([[one.get(size, np.nan)] for one in given]) for size in sizes}
+    sizes = dict.fromkeys(size for one in tables for size in one)
+    return {size: np.array([[one.get(size, np.nan)] for one in tables]) for size in sizes}
 
 
 def _numbers(application: Application) -> list[float | None]:
@@ -211,9 +211,9 @@ class Duty:
 
         A belt has that of its largest force at all times.
         """
-        kind, asked = self.asked.shaft_drive[..., None], self.asked
-        radial, axial = shaft_load.rack_load(force_N=force_N, helix_deg=asked["output_load.rack_helix_deg"][..., None])
-        tension = asked["output_load.belt_tension_factor"][..., None]
+        kind, inputs = self.asked.shaft_drive[..., None], self.asked
+        radial, axial = shaft_load.rack_load(force_N=force_N, helix_deg=inputs["output_load.rack_helix_deg"][..., None])
+        tension = inputs["output_load.belt_tension_factor"][..., None]
         by_belt = shaft_load.belt_load(largest_force_N=force_N.max(axis=-1, keepdims=True), tension_factor=tension)
         is_rack = kind == "rack_and_pinion"
         return np.where(is_rack, radial, np.where(kind == "belt", by_belt, 0.0)), np.where(is_rack, axial, 0.0)
@@ -257,8 +257,8 @@ class Duty:
     @cached_property
     def brakes(self) -> NDArray[np.bool_] | None:
         """True where a brake stops the axis, shape (N, 1); None where none does."""
-        given = ~np.isnan(self.asked["emergency_stop.brake.torque_Nm"])
-        return given if given.any() else None
+        has_brake = ~np.isnan(self.asked["emergency_stop.brake.torque_Nm"])
+        return has_brake if has_brake.any() else None
 
     @cached_property
     def typed_stop_torque_Nm(self) -> FloatArray:
@@ -268,15 +268,15 @@ class Duty:
     @cached_property
     def stop_speed_rpm(self) -> FloatArray:
         """Output speed in rpm at which the brake is told to stop the axis: as it is given, else the largest."""
-        given = self.asked["emergency_stop.brake.speed_rpm"]
-        return np.where(np.isnan(given), self.maximum_output_speed_rpm, given)
+        speed = self.asked["emergency_stop.brake.speed_rpm"]
+        return np.where(np.isnan(speed), self.maximum_output_speed_rpm, speed)
 
     @cached_property
     def stop_load(self) -> LoadTorques:
         """Torques T_d, T_v and T_o of the load in a stop: of its motion, else as they are given, else 0."""
         T_d = np.nan_to_num(self.asked["emergency_stop.brake.load_torque_Nm"])
-        given = self.asked["emergency_stop.brake.opposing_torque_Nm"]
-        T_v, T_o = T_d.copy(), np.where(np.isnan(given), T_d, given)
+        opposing = self.asked["emergency_stop.brake.opposing_torque_Nm"]
+        T_v, T_o = T_d.copy(), np.where(np.isnan(opposing), T_d, opposing)
         for place, load in self.stopped_loads.items():
             T_d[place], T_v[place] = load.pulling_at_gear_Nm, load.driving_at_gear_Nm
             T_o[place] = load.opposing_at_gear_Nm(self.stop_speed_rpm.item(place))
@@ -285,8 +285,8 @@ class Duty:
     @cached_property
     def torque_both_ways(self) -> NDArray[np.bool_]:
         """True where the torque is taken to act both ways: as asked, else where no sign says otherwise."""
-        asked = self.asked.load_reverses
-        return np.where(np.isnan(asked), self._are_unsigned, asked == 1)
+        reverses = self.asked.load_reverses
+        return np.where(np.isnan(reverses), self._are_unsigned, reverses == 1)
 
     @cached_property
     def _are_unsigned(self) -> NDArray[np.bool_]:

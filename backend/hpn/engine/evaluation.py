@@ -219,17 +219,17 @@ def judged_by(evaluation: Evaluation, used: FloatArray, bound: FloatArray) -> Ev
 def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     """Evaluation of every check that an application of a duty asks for, on every gear."""
     case = Case(duty, gears.columns, Figures(duty, gears, catalogue))
-    checks, asked = _asked(case)
-    used = np.empty((*asked.shape[:2], len(gears.rows)))
-    bound = np.ones((*asked.shape[:2], 1))
+    checks, mask = _asked(case)
+    used = np.empty((*mask.shape[:2], len(gears.rows)))
+    bound = np.ones((*mask.shape[:2], 1))
     loads = _load_checks(checks)
     bound[:loads] = case.asked["requirements.utilisation"]
     bound *= 1 + ROUNDING
     with np.errstate(all="ignore"):  # NaN and infinity are answers
         for place, check in enumerate(checks):
             used[place] = check.utilisation(case)
-        verdict, utilisation = _verdicts(asked, used, bound, loads)
-    return Evaluation(case, gears, catalogue, checks, asked, used, bound, verdict, utilisation)
+        verdict, utilisation = _verdicts(mask, used, bound, loads)
+    return Evaluation(case, gears, catalogue, checks, mask, used, bound, verdict, utilisation)
 
 
 def _load_checks(checks: Iterable[Check]) -> int:
@@ -241,15 +241,15 @@ def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
     """Checks that some application asks for, and a mask of those that do, shape (C, N, 1)."""
     always = np.zeros((len(case.duty.average_torque_Nm), 1))
     inputs = [case.asked[check.asked] if check.asked else always for check in CHECKS]
-    given = ~np.isnan(np.concatenate(np.broadcast_arrays(*inputs), axis=1)).T
+    mask = ~np.isnan(np.concatenate(np.broadcast_arrays(*inputs), axis=1)).T
     for place, check in enumerate(CHECKS):
         if check.instead:
-            given[place] |= ~np.isnan(case.asked[check.instead][:, 0])
-    places = np.flatnonzero(given.any(axis=1))
-    return tuple(CHECKS[place] for place in places.tolist()), given[places, :, None]
+            mask[place] |= ~np.isnan(case.asked[check.instead][:, 0])
+    places = np.flatnonzero(mask.any(axis=1))
+    return tuple(CHECKS[place] for place in places.tolist()), mask[places, :, None]
 
 
-def _verdicts(asked: BoolArray, used: FloatArray, bound: FloatArray, loads: int) -> tuple[NDArray[np.int8], FloatArray]:
+def _verdicts(mask: BoolArray, used: FloatArray, bound: FloatArray, loads: int) -> tuple[NDArray[np.int8], FloatArray]:
     """Verdict on each gear, and its utilisation; that of an unrated one is NaN. The first `loads` are load checks."""
     largest = np.fmax.reduce(used[:loads], axis=0)
     fails = largest > bound[0]
@@ -259,8 +259,8 @@ def _verdicts(asked: BoolArray, used: FloatArray, bound: FloatArray, loads: int)
         fails |= missed
         largest = np.where(missed, np.fmax(largest, property_used), largest)
     unknown = np.isnan(used)
-    if not asked.all():
-        unknown &= asked
+    if not mask.all():
+        unknown &= mask
     unrated = unknown.any(axis=0) & ~fails
     largest[unrated] = np.nan
     return np.int8(UNSUITABLE) * fails + np.int8(UNRATED) * unrated, largest  # neither: SUITABLE, which is 0

@@ -124,8 +124,8 @@ class Figures:
     @cached_property
     def stop_torque_Nm(self) -> FloatArray:
         """Torque T_k of an emergency stop in Nm: as it is given, else that of the brake; shape (N, 1) or (N, G)."""
-        given = self.duty.typed_stop_torque_Nm
-        return given if self.duty.brakes is None else np.where(self.duty.brakes, self.stops.torque_Nm, given)
+        torque = self.duty.typed_stop_torque_Nm
+        return torque if self.duty.brakes is None else np.where(self.duty.brakes, self.stops.torque_Nm, torque)
 
     @cached_property
     def stop_radial_N(self) -> FloatArray:
@@ -303,8 +303,8 @@ def radial_at_centre(duty: Duty, gears: GearList) -> FloatArray:
 
     NaN where the shaft's centre is not known and a lever acts in some phase; the load itself where none is given.
     """
-    asked, phases = duty.asked, duty.phases
-    x, y = asked["output_load.radial_position_mm"], asked["output_load.axial_radius_mm"]
+    inputs, phases = duty.asked, duty.phases
+    x, y = inputs["output_load.radial_position_mm"], inputs["output_load.axial_radius_mm"]
     if np.isnan(x).all() and not (y > 0).any():
         return phases.radial_N
     radial = bearing.radial_load_at_centre(
@@ -323,8 +323,8 @@ def shaft_centre_mm(duty: Duty, gears: GearList) -> FloatArray:
     NaN where neither is known.
     """
     own = gears.columns.shaft_centre_mm[gears.first_of_size]
-    given = duty.asked.shaft_centre_mm([gears.rows[place].size for place in gears.first_of_size.tolist()])
-    return np.where(np.isnan(own), given, own)
+    typed = duty.asked.shaft_centre_mm([gears.rows[place].size for place in gears.first_of_size.tolist()])
+    return np.where(np.isnan(own), typed, own)
 
 
 def _bearing_loads(duty: Duty, gears: GearList, radial_N: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -205,12 +205,12 @@ class _Search:
 
 def _undominated(rows: BoolArray, order: PlaceArray) -> PlaceArray:
     """Gears in an order, without those of which an earlier one suits every row as well."""
-    kept: list[int] = []
+    best: list[int] = []
     for gear in order.tolist():
-        replaced = any(not (rows[:, gear] & ~rows[:, other]).any() for other in kept)
+        replaced = any(not (rows[:, gear] & ~rows[:, other]).any() for other in best)
         if rows[:, gear].any() and not replaced:
-            kept.append(gear)
-    return np.array(kept, np.intp)
+            best.append(gear)
+    return np.array(best, np.intp)
 
 
 def _apart(suits: BoolArray, most: int) -> int:

@@ -57,8 +57,8 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
     places = [place for place, check in enumerate(evaluation.checks) if check.code in MOTOR_CHECKS]
     uses = []
     for row, (motor, ratio) in enumerate(zip(motors, ratios, strict=True)):
-        asked = [place for place in places if evaluation.asked.item(place, row, 0)]
-        shares = {evaluation.checks[place].code: evaluation.used.item(place, row, 0) for place in asked}
+        checks = [place for place in places if evaluation.asked.item(place, row, 0)]
+        shares = {evaluation.checks[place].code: evaluation.used.item(place, row, 0) for place in checks}
         if shares and not np.isnan(list(shares.values())).any():
             fits = all(share <= allowed(code, u) * (1 + ROUNDING) for code, share in shares.items())
             uses.append(MotorUse(motor, shares, None if np.isnan(ratio) else ratio, fits))
@@ -67,8 +67,8 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
 
 def asks_inertia_ratio(application: Application) -> bool:
     """True where the load's inertia is limited to a multiple of the motor's, which then has to be known."""
-    asked = application.requirements.motor
-    return asked is not None and asked.inertia_ratio is not None
+    motor = application.requirements.motor
+    return motor is not None and motor.inertia_ratio is not None
 
 
 def _known(value: float | None) -> float:
@@ -93,8 +93,8 @@ def with_motors(
 
 def _without_motor(application: Application) -> Application:
     """The application without a motor of its own; the permitted inertia ratio stays."""
-    asked = application.requirements.motor
-    bound = Motor(inertia_ratio=asked.inertia_ratio) if asks_inertia_ratio(application) and asked else None
+    motor = application.requirements.motor
+    bound = Motor(inertia_ratio=motor.inertia_ratio) if asks_inertia_ratio(application) and motor else None
     return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": bound})})
 
 
@@ -106,16 +106,16 @@ def entries_of(motors: Sequence[ListedMotor]) -> list[MotorEntry]:
 
 def with_motor(application: Application, motor: ListedMotor) -> Application:
     """The application with a motor of the list in place of its own; the permitted inertia ratio stays."""
-    asked = application.requirements.motor
-    named = Motor(designation=motor.designation, inertia_ratio=asked.inertia_ratio if asked else None)
+    own = application.requirements.motor
+    named = Motor(designation=motor.designation, inertia_ratio=own.inertia_ratio if own else None)
     return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": named})})
 
 
 def with_figures(application: Application, motor: MotorEntry) -> Application:
     """The application with a motor's figures in it; the permitted inertia ratio stays."""
-    asked = application.requirements.motor
+    typed = application.requirements.motor
     own = Motor(
-        **{name: getattr(motor, name) for name in LISTED_FIGURES}, inertia_ratio=asked.inertia_ratio if asked else None
+        **{name: getattr(motor, name) for name in LISTED_FIGURES}, inertia_ratio=typed.inertia_ratio if typed else None
     )
     return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": own})})
 
@@ -138,12 +138,12 @@ def ratios_with_motor(selection: Selection) -> list[SizeWithMotor]:
     for candidate in selection.candidates:
         if candidate.status == "suitable" or (candidate.is_judged and _fails_by_motor_alone(candidate.failing)):
             sizes.setdefault(candidate.size, []).append(candidate)
-    found = []
+    ratios = []
     for size in sorted(sizes, key=lambda size: int(size.rstrip("A"))):
         own = sorted(sizes[size], key=lambda candidate: candidate.ratio)
         fit = tuple(one for one in own if one.status == "suitable")
-        found.append(SizeWithMotor(size, fit, tuple(one for one in own if one.status != "suitable")))
-    return found
+        ratios.append(SizeWithMotor(size, fit, tuple(one for one in own if one.status != "suitable")))
+    return ratios
 
 
 def _fails_by_motor_alone(failing: Sequence[CheckResult]) -> bool:

@@ -244,8 +244,8 @@ def _template_of(code: str, values: Mapping[str, Mixed]) -> str:
 
 
 def _sentence(template: str, values: Mapping[str, Mixed]) -> Sentence:
-    shown = {name: value if isinstance(value, str) else Quantity(value, *_told(name)) for name, value in values.items()}
-    return Sentence(template, shown, TRANSLATED)
+    texts = {name: value if isinstance(value, str) else Quantity(value, *_told(name)) for name, value in values.items()}
+    return Sentence(template, texts, TRANSLATED)
 
 
 def _told(name: str) -> tuple[str, int, Rounding]:

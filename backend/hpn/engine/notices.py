@@ -22,22 +22,22 @@ from hpn.words.wording import Sentence
 
 def notices_of(application: Application, evaluation: Evaluation, index: int) -> tuple[Notice, ...]:
     """Notices on an application, which is number `index` of an evaluation; the most general ones last."""
-    found: list[Notice] = []
+    notices: list[Notice] = []
     if application.application_area is not None:
-        found.append(notice("application_area", area=AREAS[application.application_area]))
-    found += _on_the_motion(application.duty_cycle)
-    found += _on_tolerances(application, evaluation)
-    found += _on_the_shaft(application, evaluation, index)
-    found += _on_stop_and_life(application, evaluation, index)
-    found += _on_stiffness(application, evaluation, index)
-    found += _on_speed(evaluation, index)
+        notices.append(notice("application_area", area=AREAS[application.application_area]))
+    notices += _on_the_motion(application.duty_cycle)
+    notices += _on_tolerances(application, evaluation)
+    notices += _on_the_shaft(application, evaluation, index)
+    notices += _on_stop_and_life(application, evaluation, index)
+    notices += _on_stiffness(application, evaluation, index)
+    notices += _on_speed(evaluation, index)
     if application.loads is not None:
-        found += _on_unused_loads(application.loads, application.duty_cycle)
-        found += _on_the_bearing(application.loads, evaluation, index)
-    found += _on_the_motor(application, evaluation, index)
-    found += _on_the_torque_limit(evaluation, index)
-    found += _unrated(evaluation.gears, evaluation.catalogue)
-    return (*found, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
+        notices += _on_unused_loads(application.loads, application.duty_cycle)
+        notices += _on_the_bearing(application.loads, evaluation, index)
+    notices += _on_the_motor(application, evaluation, index)
+    notices += _on_the_torque_limit(evaluation, index)
+    notices += _unrated(evaluation.gears, evaluation.catalogue)
+    return (*notices, *([notice("catalogue_supplement")] if evaluation.catalogue.supplement else ()))
 
 
 ADDED_AT_MOTOR = frozenset(("motor_losses_included", "motor_inertia_included", "motor_all_included"))
@@ -49,8 +49,8 @@ ON_MOTOR_TORQUES = ADDED_AT_MOTOR | {"motor_torque_partial"}
 
 def on_motor_torques(notices: Iterable[Notice]) -> Sentence:
     """Sentence on what the motor torques of a selection include, which holds without a notice on them too."""
-    found = (one for one in notices if one.code in ON_MOTOR_TORQUES)
-    return next(found, notice("motor_torque_partial")).sentence
+    first = (one for one in notices if one.code in ON_MOTOR_TORQUES)
+    return next(first, notice("motor_torque_partial")).sentence
 
 
 def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
@@ -212,16 +212,16 @@ def _on_the_lever(load: OutputLoad, evaluation: Evaluation, index: int) -> Itera
 
 
 def _on_the_motor(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
-    asked, catalogue = application.requirements, evaluation.catalogue
-    if asked.efficiency is not None:
-        yield notice("efficiency_assumed", efficiency_percent=100 * asked.efficiency)
-    elif asked.motor is not None or application.rank_by == "motor_torque":
+    requirements, catalogue = application.requirements, evaluation.catalogue
+    if requirements.efficiency is not None:
+        yield notice("efficiency_assumed", efficiency_percent=100 * requirements.efficiency)
+    elif requirements.motor is not None or application.rank_by == "motor_torque":
         yield notice("efficiency_supplied" if catalogue.efficiency else "efficiency_unknown")
         curved = (gear for gear in evaluation.gears.rows if gear.designation in catalogue.efficiency)
         left = [gear.designation for gear in curved if leaves_curve(catalogue, gear, evaluation.case.duty, index)]
         if left:
             yield notice("efficiency_beyond_curve", names=", ".join(left))
-    if asked.motor is not None or application.rank_by == "motor_torque":
+    if requirements.motor is not None or application.rank_by == "motor_torque":
         included = not np.isnan(evaluation.case.asked["requirements.motor.inertia_kgm2"].item(index))
         moving = application.duty_cycle.motion is not None
         gears = evaluation.gears.columns
@@ -236,16 +236,16 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
 
 def _on_the_torque_limit(evaluation: Evaluation, index: int) -> Iterable[Notice]:
     """Notices on the drive's torque limit: of the first candidate, and on the efficiency behind those of all."""
-    figures, asked, best = evaluation.case.figures, evaluation.case.asked, evaluation.order.item(index, 0)
+    figures, inputs, best = evaluation.case.figures, evaluation.case.asked, evaluation.order.item(index, 0)
     limits = figures.motor_torque_limit_Nm[index]
     without = np.isnan(known_efficiency(evaluation.gears, evaluation.catalogue)) & ~np.isnan(limits)
-    if np.isnan(asked["requirements.efficiency"].item(index)) and without.any():
+    if np.isnan(inputs["requirements.efficiency"].item(index)) and without.any():
         yield notice("limit_without_efficiency")
     yield from on_torque_limit(
         evaluation.gears.rows[best],
         limit_Nm=limits.item(best),
         need_Nm=figures.motor_peak_torque_Nm[index].item(best),
-        peak_Nm=asked["requirements.motor.peak_torque_Nm"].item(index),
+        peak_Nm=inputs["requirements.motor.peak_torque_Nm"].item(index),
     )
 
 

@@ -138,8 +138,8 @@ def alternatives_of(candidate: Candidate, reserve_utilisation: float = 1.0) -> t
         ways = tuple(dict.fromkeys(replace(way, emergency_stop_count=None, brake_torque_Nm=None) for way in ways))
     if any(way.brake_torque_Nm == 0 for way in ways) or _never_stops(candidate):
         return ()
-    found = [Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way)]
-    return in_order(found)
+    alternatives = [Alternative(one, changed) for way in ways or (Way(),) for one in _by_stop(way)]
+    return in_order(alternatives)
 
 
 def _is_known(candidate: Candidate) -> bool:
@@ -196,8 +196,8 @@ def _requirements(candidate: Candidate, u: float) -> Iterable[Requirement]:
         elif known.accepted and all(_is_untold(candidate, driver) for driver in known.moves):
             least, allowed = known.kind == "minimum", known.allowed(u)
             needed = check.demand * (allowed if least else 1 / allowed)
-            shown = Quantity(needed, suffix_of(known.asked), DIGITS, "down" if least else "up")
-            yield Requirement(known.asked, shown, known.accepted)
+            bound = Quantity(needed, suffix_of(known.asked), DIGITS, "down" if least else "up")
+            yield Requirement(known.asked, bound, known.accepted)
 
 
 # --- In words ---------------------------------------------------------------------------------------------------------

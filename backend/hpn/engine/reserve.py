@@ -32,16 +32,16 @@ def reserves(evaluation: Evaluation, index: int) -> dict[str, FloatArray]:
     has the gear's torque without load in it, for those of torque and speed where the motor's own inertia has a part in
     it, which goes by the motion's acceleration.
     """
-    asked, duty = evaluation.case.asked, evaluation.case.duty
-    u = asked["requirements.utilisation"].item(index)
+    inputs, duty = evaluation.case.asked, evaluation.case.duty
+    u = inputs["requirements.utilisation"].item(index)
     with np.errstate(all="ignore"):
         factors = {f"{driver}_factor": _factor(evaluation, index, driver, u) for driver in DRIVERS}
-    if any(not np.isnan(asked[path].item(index)) for path in MOTOR_TORQUE_INPUTS):
+    if any(not np.isnan(inputs[path].item(index)) for path in MOTOR_TORQUE_INPUTS):
         follows_curve = np.array(
             [gear.designation in evaluation.catalogue.efficiency for gear in evaluation.gears.rows]
         )
-        stated = not np.isnan(asked["requirements.efficiency"].item(index))
-        own_inertia = not np.isnan(asked["requirements.motor.inertia_kgm2"].item(index))
+        stated = not np.isnan(inputs["requirements.efficiency"].item(index))
+        own_inertia = not np.isnan(inputs["requirements.motor.inertia_kgm2"].item(index))
         turns = own_inertia and duty.courses.get(index) is not None
         apart = follows_curve & ~np.bool_(stated) | (evaluation.gears.columns.no_load_torque_Nm > 0)
         factors["torque_factor"] = np.where(apart | np.bool_(turns), np.nan, factors["torque_factor"])

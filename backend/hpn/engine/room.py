@@ -95,19 +95,19 @@ class _Alone:
     def members(self, intervals: Sequence[Interval]) -> Members:
         return members_of(self.application, self.catalogue, intervals)
 
-    def judged(self, found: Sequence[Found]) -> Evaluation:
+    def judged(self, cases: Sequence[Found]) -> Evaluation:
         """Evaluation of worst cases, each in the place of an application."""
-        count = len(found)
-        used = np.stack([one.used for one in found], axis=1)
-        asked = np.repeat(self.base.asked, count, axis=1)
+        count = len(cases)
+        used = np.stack([one.used for one in cases], axis=1)
+        mask = np.repeat(self.base.asked, count, axis=1)
         bound = np.repeat(worst_bound(self.base), count, axis=1)
-        return judged_by(replace(self.base, asked=asked), used, bound)
+        return judged_by(replace(self.base, asked=mask), used, bound)
 
     def worst(self, boxes: Sequence[Sequence[Interval]], samples: int = FEW_SAMPLES) -> tuple[list[Found], Evaluation]:
         """Worst cases over some intervals, and their evaluation."""
         members = [self.members(intervals) for intervals in boxes]
-        found = worst_cases(members, self.base.checks, self.base.gears, self.catalogue, samples)
-        return found, self.judged(found)
+        cases = worst_cases(members, self.base.checks, self.base.gears, self.catalogue, samples)
+        return cases, self.judged(cases)
 
 
 def room_of(
@@ -164,9 +164,9 @@ def allowed_of(application: Application, gear: Gear, catalogue: Catalogue, path:
 
 def with_tolerance(application: Application, path: str, factor: float) -> Application:
     """The application with one tolerance by a factor, in three digits that never exceed it."""
-    given = (application.tolerances or {})[path]
+    tolerance = (application.tolerances or {})[path]
     return application.model_copy(
-        update={"tolerances": {**(application.tolerances or {}), path: scaled(given, factor)}}
+        update={"tolerances": {**(application.tolerances or {}), path: scaled(tolerance, factor)}}
     )
 
 
@@ -176,8 +176,8 @@ def scaled(tolerance: Tolerance, factor: float) -> Tolerance:
     def number(value: float) -> float:
         return float(rounded(value * factor, 3, "down"))
 
-    def side(given: Deviation | None) -> Deviation | None:
-        return given and Deviation(**{name: number(value) for name, value in given if value is not None})
+    def side(deviation: Deviation | None) -> Deviation | None:
+        return deviation and Deviation(**{name: number(value) for name, value in deviation if value is not None})
 
     if tolerance.minus or tolerance.plus:
         return Tolerance(minus=side(tolerance.minus), plus=side(tolerance.plus))
@@ -245,7 +245,7 @@ def _zero(
     most_steps: int,
 ) -> float:
     """Largest factor at which nothing exceeds its bound: regula falsi (Illinois), bisection without a number."""
-    kept = 0
+    last = 0
     for _ in range(most_steps):
         if high - low <= close * high:
             break
@@ -257,10 +257,10 @@ def _zero(
         at_middle = excess(middle)
         if at_middle <= 0:
             low, at_low = middle, at_middle
-            at_high, kept = (at_high / 2 if kept > 0 else at_high), 1
+            at_high, last = (at_high / 2 if last > 0 else at_high), 1
         else:
             high, at_high = middle, at_middle
-            at_low, kept = (at_low / 2 if kept < 0 else at_low), -1
+            at_low, last = (at_low / 2 if last < 0 else at_low), -1
     return low
 
 

@@ -213,8 +213,8 @@ class Judged:
         """
         catalogue, duty = self.evaluation.catalogue, self.evaluation.case.duty
         gears = gears_left_out(self.evaluation.gears, catalogue)
-        found = candidates_of(evaluate(duty, gears, catalogue), 0) if gears.rows else ()
-        return tuple(msgspec.structs.replace(candidate, rank=None) for candidate in found)
+        others = candidates_of(evaluate(duty, gears, catalogue), 0) if gears.rows else ()
+        return tuple(msgspec.structs.replace(candidate, rank=None) for candidate in others)
 
 
 def select(

@@ -117,8 +117,8 @@ class Stops:
 
         `first` is the place of its first candidate, `name` its designation.
         """
-        given, motion = application.emergency_stop, application.duty_cycle.motion
-        if given is None or (brake := given.brake) is None:
+        stop, motion = application.emergency_stop, application.duty_cycle.motion
+        if stop is None or (brake := stop.brake) is None:
             return
         if np.isnan(self.duty.load_inertia_kgm2.item(index)) or np.isnan(self.motor_inertia_kgm2[index]).all():
             yield "brake_inertia_unknown", {}

@@ -88,15 +88,15 @@ def worst_cases(
     needs = needs_of(boxes, checks, gears, catalogue)
     rows = [_Rows(box, own) for box, own in zip(boxes, needs, strict=True)]
     duty = duty_of([(box, own.points) for box, own in zip(boxes, rows, strict=True)])
-    judged, found, first = _Judged(evaluate(duty, gears, catalogue), rows), [], 0
+    judged, cases, first = _Judged(evaluate(duty, gears, catalogue), rows), [], 0
     for group in members:
         own = [judged.worst(number, first, group) for number in range(len(checks))]
         used, exact, at = (np.stack(part) for part in zip(*own, strict=True))
         points = [(box, point) for box, part in _parts(group, rows, first) for point in part.points]
         worst = Found(used, exact.astype(np.bool_), at.astype(np.intp), points)
-        found.append(worst if worst.exact.all() else _sampled(worst, group, checks, gears, samples))
+        cases.append(worst if worst.exact.all() else _sampled(worst, group, checks, gears, samples))
         first += len(group.boxes)
-    return found
+    return cases
 
 
 class _Rows:
@@ -104,7 +104,7 @@ class _Rows:
 
     def __init__(self, box: Box, needs: Sequence[Need]) -> None:
         known: dict[bytes, int] = {}
-        kept: list[FloatArray] = []
+        points: list[FloatArray] = []
         self.of: list[list[int]] = []
         self.needs = needs
         for need in needs:
@@ -112,11 +112,11 @@ class _Rows:
             for point in need.points:
                 key = point.tobytes()
                 if key not in known:
-                    known[key] = len(kept)
-                    kept.append(point)
+                    known[key] = len(points)
+                    points.append(point)
                 places.append(known[key])
             self.of.append(places)
-        self.points = np.array(kept).reshape(len(kept), len(box.value))
+        self.points = np.array(points).reshape(len(points), len(box.value))
 
 
 def _parts(group: Members, rows: Sequence[_Rows], place: int) -> list[tuple[Box, _Rows]]:
@@ -169,10 +169,10 @@ class _Judged:
 # --- Samples ----------------------------------------------------------------------------------------------------------
 
 
-def _sampled(found: Found, group: Members, checks: Sequence[Check], gears: GearList, samples: int) -> Found:
+def _sampled(corners: Found, group: Members, checks: Sequence[Check], gears: GearList, samples: int) -> Found:
     """Worst cases with those of samples where nothing is proved."""
-    open_ = [place for place in range(len(checks)) if not found.exact[place].all()]
-    used, at, points = found.used.copy(), found.at.copy(), list(found.points)
+    open_ = [place for place in range(len(checks)) if not corners.exact[place].all()]
+    used, at, points = corners.used.copy(), corners.at.copy(), list(corners.points)
     for box, some in group.sampled(samples):
         for part in chunks_of(some):
             duty = box.at(part)
@@ -182,11 +182,11 @@ def _sampled(found: Found, group: Members, checks: Sequence[Check], gears: GearL
                     values = np.broadcast_to(checks[place].utilisation(case), (len(part), len(gears.rows)))
                 best = np.where(np.isnan(values), -np.inf, values).argmax(axis=0)
                 largest = values[best, np.arange(len(gears.rows))]
-                worse = ~found.exact[place] & (largest > np.where(np.isnan(used[place]), np.inf, used[place]))
+                worse = ~corners.exact[place] & (largest > np.where(np.isnan(used[place]), np.inf, used[place]))
                 used[place] = np.where(worse, largest, used[place])
                 at[place] = np.where(worse, len(points) + best, at[place])
             points += [(box, point) for point in part]
-    return replace(found, used=used, at=at, points=points)
+    return replace(corners, used=used, at=at, points=points)
 
 
 def chunks_of(points: FloatArray) -> list[FloatArray]:

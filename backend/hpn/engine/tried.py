@@ -60,11 +60,11 @@ def _fits(application: Application, alternative: Alternative, gears: GearList, c
     return evaluate(Duty.of([changed]), gears, catalogue).verdict.item() == SUITABLE
 
 
-def _as_asked(limit: Requirement, asked: Requirements) -> Requirement:
+def _as_asked(limit: Requirement, requirements: Requirements) -> Requirement:
     """The limit of a position error as a length where it is asked for as one."""
-    if limit.path != POSITION_ERROR or asked.position_error_mm is None:
+    if limit.path != POSITION_ERROR or requirements.position_error_mm is None:
         return limit
-    length = limit.value.value * (asked.position_radius_mm or 0.0) / ARCMIN_PER_RAD
+    length = limit.value.value * (requirements.position_radius_mm or 0.0) / ARCMIN_PER_RAD
     value = Quantity(length, "mm", limit.value.digits, limit.value.rounding)
     return replace(limit, path="requirements.position_error_mm", value=value)
 
@@ -106,19 +106,21 @@ def followed(application: Application, way: Way) -> Application:
     else:
         phases = _with_shaft_loads(application, _driven(cycle, torque, speed, load), load)
         parts["duty_cycle"] = cycle.model_copy(update={"phases": phases, "motion": None})
-        asked = application.requirements
+        requirements = application.requirements
         if cycle.motion is None:
-            friction = _scaled(asked.rest_friction_Nm, torque) or 0.0  # a torque of the cycle as the others are
-            parts["requirements"] = asked.model_copy(update={"rest_friction_Nm": friction})
+            friction = _scaled(requirements.rest_friction_Nm, torque) or 0.0  # a torque of the cycle as the others are
+            parts["requirements"] = requirements.model_copy(update={"rest_friction_Nm": friction})
         else:
-            parts["requirements"] = asked.model_copy(update=_of_motion(cycle, cycle.motion, asked, torque))
+            parts["requirements"] = requirements.model_copy(
+                update=_of_motion(cycle, cycle.motion, requirements, torque)
+            )
             stop = stop and _pulled(stop, cycle.motion)
     if cycle.motion is not None and parts["duty_cycle"].motion is None:
         parts["tolerances"] = _without_motion(application.tolerances)
-    if (given := application.output_load) is not None:
-        loads = {name: _scaled(getattr(given, name), load) for name in LOADS}
-        loads |= {"from_motion": given.from_motion and parts["duty_cycle"].motion is not None}
-        parts["output_load"] = given.model_copy(update={k: v for k, v in loads.items() if v is not None})
+    if (output := application.output_load) is not None:
+        loads = {name: _scaled(getattr(output, name), load) for name in LOADS}
+        loads |= {"from_motion": output.from_motion and parts["duty_cycle"].motion is not None}
+        parts["output_load"] = output.model_copy(update={k: v for k, v in loads.items() if v is not None})
     if stop is not None:
         parts["emergency_stop"] = _stopped(stop, way)
     return application.model_copy(update=parts)
@@ -129,11 +131,11 @@ def _without_motion(tolerances: Tolerances | None) -> Tolerances | None:
     return {path: one for path, one in (tolerances or {}).items() if not path.startswith("motion.")} or None
 
 
-def _of_motion(cycle: DutyCycle, motion: Motion, asked: Requirements, torque: float) -> dict[str, float | bool]:
+def _of_motion(cycle: DutyCycle, motion: Motion, requirements: Requirements, torque: float) -> dict[str, float | bool]:
     """Requirements that stand for a motion whose phases are typed, their torques by a factor."""
     return {
         "load_inertia_kgm2": motion.load_inertia_kgm2,
-        "load_reverses": bool(asked.load_reverses),
+        "load_reverses": bool(requirements.load_reverses),
         "rest_friction_Nm": _scaled(cycle.rest_friction_Nm, torque) or 0.0,
     }
 
@@ -145,10 +147,10 @@ def _loaded(motion: Motion, load: float) -> Motion:
     """The motion with the loads of its moves by a factor."""
     if load == 1:
         return motion
-    given = motion.model_dump(exclude_unset=True)  # validated again, since a copy would keep the phases of before
-    for move in given["moves"]:
+    content = motion.model_dump(exclude_unset=True)  # validated again, since a copy would keep the phases of before
+    for move in content["moves"]:
         move |= {name: _scaled(move[name], load) for name in LOADS if move.get(name) is not None}
-    return type(motion).model_validate(given)
+    return type(motion).model_validate(content)
 
 
 def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple[Phase, ...]:

@@ -33,11 +33,11 @@ def corners_of(application: Application, gear: Gear, catalogue: Catalogue, codes
     """Worst cases of some checks of a gear, by their codes."""
     gears = catalogue.listed([gear])
     nominal = evaluate(Duty.of([with_listed_motor(application, catalogue)]), gears, catalogue)
-    (found,) = worst_cases([members_of(application, catalogue)], nominal.checks, gears, catalogue, SAMPLES)
+    (worst,) = worst_cases([members_of(application, catalogue)], nominal.checks, gears, catalogue, SAMPLES)
     places = {check.code: place for place, check in enumerate(nominal.checks) if check.code in codes}
     cases = {}
     for code, place in places.items():
-        box, point = found.points[found.at.item(place, 0)]
+        box, point = worst.points[worst.at.item(place, 0)]
         cases[code] = box.application_at(point)
     judged = [_judged(case, gear, catalogue) for case in cases.values()]
     return {

@@ -105,15 +105,15 @@ def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping
     largest = _largest_of_lists(before, after)
     known = {_of_any(name) for name in before.values}
     kinds = {name[:-1] for name in known}
-    found = [
+    different = [
         _difference(name, old, new)
         for name, (old, new) in aligned(before.values, after.values)
         if (one := _of_any(name)) in known or one[:-1] not in kinds
         if _differs(name, before, after, largest)
     ]
-    if not any(one.kind == "figure" or one.field == "status" for one in found):
-        found = [structs.replace(one, cause="tie_rule") if one.kind == "verdict" else one for one in found]
-    return sorted(found, key=_weight)
+    if not any(one.kind == "figure" or one.field == "status" for one in different):
+        different = [structs.replace(one, cause="tie_rule") if one.kind == "verdict" else one for one in different]
+    return sorted(different, key=_weight)
 
 
 def _of_any(name: Name) -> Name:
@@ -195,13 +195,13 @@ def figure_differences(
     saved: Catalogue, today: Catalogue, designations: Iterable[str], motor: str | None = None
 ) -> list[FigureDifference]:
     """Differences of the figures that two catalogues publish of some gears, gear by gear, and of a listed motor."""
-    found = [
+    of_gears = [
         FigureDifference(designation, None, *difference)
         for designation in designations
         for difference in _pairs(_of_gear(saved, designation), _of_gear(today, designation))
     ]
     of_motor = [] if motor is None else _pairs(_of_motor(saved, motor), _of_motor(today, motor))
-    return found + [FigureDifference(None, motor, *difference) for difference in of_motor]
+    return of_gears + [FigureDifference(None, motor, *difference) for difference in of_motor]
 
 
 def _pairs(before: dict[str, Any], after: dict[str, Any]) -> list[tuple[str, Any, Any]]:

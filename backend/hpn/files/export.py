@@ -42,8 +42,8 @@ class ExportTitle:
     def __post_init__(self) -> None:
         """Replace what no file can hold, in texts that anybody may have written."""
         for part in fields(self):
-            shown = _NO_XML.sub("\N{REPLACEMENT CHARACTER}", getattr(self, part.name))
-            object.__setattr__(self, part.name, shown)
+            text = _NO_XML.sub("\N{REPLACEMENT CHARACTER}", getattr(self, part.name))
+            object.__setattr__(self, part.name, text)
 
 
 @dataclass(frozen=True)

@@ -166,14 +166,14 @@ class Axes:
         if COLUMNS.all[name].kind == "boolean":  # null, false or true
             return (np.nan_to_num(self._numbers(name), nan=-1.0) + 1).astype(np.intp)
         if _is_number(name) and not (COLUMNS.all[name].by_size and is_text(self._table[name].type)):
-            given = ~np.isnan(self._numbers(name))
-            return (self._any_phase(given) if name in COLUMNS.phases else given).astype(np.intp)
+            known = ~np.isnan(self._numbers(name))
+            return (self._any_phase(known) if name in COLUMNS.phases else known).astype(np.intp)
         numbers: dict[object, int] = {}
         texts = self._table[name].to_pylist()
         keys: Iterable[object] = (tuple(text) if isinstance(text, list) else text for text in texts)
         if COLUMNS.all[name].by_size:
-            given = ~np.isnan(self._numbers(name))
-            keys = (is_number or text for text, is_number in zip(texts, given.tolist(), strict=True))
+            known = ~np.isnan(self._numbers(name))
+            keys = (is_number or text for text, is_number in zip(texts, known.tolist(), strict=True))
         return np.array([numbers.setdefault(key, len(numbers)) for key in keys], np.intp)
 
     def _judged(self, cells: Mapping[str, Any]) -> tuple[Application, GearList] | None:
@@ -265,8 +265,8 @@ def _values(column: pa.ChunkedArray) -> FloatArray:
     values = np.asarray(pc.cast(column, pa.float64(), safe=False).to_numpy())
     wrong = np.isnan(values)
     if wrong.any() and column.null_count < wrong.sum():
-        given = np.asarray(pc.is_valid(column))
-        values = np.where(wrong & given, np.inf, values)
+        known = np.asarray(pc.is_valid(column))
+        values = np.where(wrong & known, np.inf, values)
     return values
 
 

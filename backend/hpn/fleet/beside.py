@@ -71,19 +71,21 @@ def read_machine(
 
     content = content.encode() if isinstance(content, str) else content
     try:
-        given = given_of(text_of(content).encode() if reading.suffix == ".csv" else content, NAME + reading.suffix)
+        source = given_of(text_of(content).encode() if reading.suffix == ".csv" else content, NAME + reading.suffix)
     except FleetError as error:
         return MachineReading(reading=reading, refusal=str(error).replace(NAME + reading.suffix, NAME))
-    return MachineReading(reading=reading, rows=given.rows, faults=given.faults, axes=given.axes, phases=given.phases)
+    return MachineReading(
+        reading=reading, rows=source.rows, faults=source.faults, axes=source.axes, phases=source.phases
+    )
 
 
 def read_answered(
-    content: bytes, wanted: TableBounds, given: Sequence[str]
+    content: bytes, wanted: TableBounds, texts: Sequence[str]
 ) -> tuple[MachineReading, tuple[Sentence, ...]]:
     """Reading of a file by answers of a program, and what is wrong with these; no unit is assumed."""
-    answers = answers_of(given)
-    read = read_machine(content, wanted, answers.whole)
-    if read.reading.table is not None and answers.columns:
-        answers = about(read.reading.table.columns, answers, wanted.inputs)
-        read = read_machine(content, wanted, answers.whole)
-    return read, answers.faults
+    answers = answers_of(texts)
+    table = read_machine(content, wanted, answers.whole)
+    if table.reading.table is not None and answers.columns:
+        answers = about(table.reading.table.columns, answers, wanted.inputs)
+        table = read_machine(content, wanted, answers.whole)
+    return table, answers.faults

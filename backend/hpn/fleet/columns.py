@@ -47,45 +47,45 @@ class InputColumn(InputField):
         item = {"string": pa.string(), "boolean": pa.bool_()}.get("string" if self.by_size else self.kind, pa.float64())
         return pa.list_(item) if self.is_list else item
 
-    def takes(self, given: pa.DataType, wanted: pa.DataType) -> bool:
+    def takes(self, type: pa.DataType, wanted: pa.DataType) -> bool:
         """True where a column of an Arrow type can be read as one of a wanted type."""
-        given = plain_type(given)
-        if kinds.is_null(given):
+        type = plain_type(type)
+        if kinds.is_null(type):
             return not self.required
         if is_list(wanted):
-            return is_list(given) and self._takes_item(given.value_type)
-        return self._takes_item(given)
+            return is_list(type) and self._takes_item(type.value_type)
+        return self._takes_item(type)
 
-    def _takes_item(self, given: pa.DataType) -> bool:
-        if kinds.is_null(given):
+    def _takes_item(self, type: pa.DataType) -> bool:
+        if kinds.is_null(type):
             return True
-        if self.by_size and is_text(given):
+        if self.by_size and is_text(type):
             return True
         if self.kind in ("string", "boolean"):
-            return is_text(given) if self.kind == "string" else bool(kinds.is_boolean(given))
-        return bool(kinds.is_integer(given) or kinds.is_floating(given) or kinds.is_decimal(given))
+            return is_text(type) if self.kind == "string" else bool(kinds.is_boolean(type))
+        return bool(kinds.is_integer(type) or kinds.is_floating(type) or kinds.is_decimal(type))
 
 
-def is_list(given: pa.DataType) -> bool:
+def is_list(type: pa.DataType) -> bool:
     """True for an Arrow type of lists, of any kind."""
-    return any(test(given) for test in LISTS)
+    return any(test(type) for test in LISTS)
 
 
 LISTS = (kinds.is_list, kinds.is_large_list, kinds.is_fixed_size_list, kinds.is_list_view, kinds.is_large_list_view)
 
 
-def plain_type(given: pa.DataType) -> pa.DataType:
+def plain_type(type: pa.DataType) -> pa.DataType:
     """Arrow type of the values themselves, however they are encoded: as a dictionary, as runs, in views."""
-    if kinds.is_dictionary(given) or kinds.is_run_end_encoded(given):
-        return plain_type(given.value_type)
-    if is_list(given):
-        return pa.list_(plain_type(given.value_type))
-    return pa.string() if kinds.is_string_view(given) or is_uuid(given) else given
+    if kinds.is_dictionary(type) or kinds.is_run_end_encoded(type):
+        return plain_type(type.value_type)
+    if is_list(type):
+        return pa.list_(plain_type(type.value_type))
+    return pa.string() if kinds.is_string_view(type) or is_uuid(type) else type
 
 
-def is_text(given: pa.DataType) -> bool:
+def is_text(type: pa.DataType) -> bool:
     """True for an Arrow type of texts."""
-    return bool(kinds.is_string(given) or kinds.is_large_string(given) or kinds.is_string_view(given))
+    return bool(kinds.is_string(type) or kinds.is_large_string(type) or kinds.is_string_view(type))
 
 
 TOLERANCES = "tolerances"
@@ -226,10 +226,10 @@ def _by_size(text: str) -> Any:
         return float(text)
     try:
         require_unique(text.encode())
-        found = json.loads(text)
+        value = json.loads(text)
     except (ValueError, RecursionError):
         return text
-    return found if isinstance(found, dict) else text
+    return value if isinstance(value, dict) else text
 
 
 def _column(name: str, field: InputField, *, is_list: bool) -> InputColumn:
@@ -280,5 +280,5 @@ def are_taken(names: Sequence[str], is_in_list_form: bool) -> bool:
     is_in_list_form = is_in_list_form or "axis_name" in names  # of a machine whose first axis has no phases
     known = {AXIS, *COLUMNS.phases, *((*COLUMNS.others, *OF_MACHINE) if is_in_list_form else ())}
     known |= {name for name in names if is_in_list_form and tolerance_column(name)}
-    given = {name for place, name in enumerate(names) if not INDEX.fullmatch(name) and (place or name)}
-    return {AXIS, "torque_Nm"} <= given <= known
+    texts = {name for place, name in enumerate(names) if not INDEX.fullmatch(name) and (place or name)}
+    return {AXIS, "torque_Nm"} <= texts <= known

@@ -153,19 +153,19 @@ class CsvTable(AxisTable):
         """
         if b'"' not in content:
             return content.rfind(b"\n") + 1
-        given = np.frombuffer(content, np.uint8)
-        ends, marks = np.flatnonzero(given == ord("\n")), np.flatnonzero(given == ord('"'))
+        characters = np.frombuffer(content, np.uint8)
+        ends, marks = np.flatnonzero(characters == ord("\n")), np.flatnonzero(characters == ord('"'))
         inside = np.searchsorted(marks, ends) % 2 == 1
         has_lines_in_cells = bool(inside[ends < marks[-1]].any()) or (is_whole and len(marks) % 2 == 1)
-        if _are_of_cells(given, marks) and not has_lines_in_cells:
+        if _are_of_cells(characters, marks) and not has_lines_in_cells:
             ends = ends[~inside]
             return int(ends[-1]) + 1 if len(ends) else 0
         quoted = np.zeros(len(content), np.bool_)
-        for found in QUOTED.finditer(content):
-            if self._is_broken(found, is_at_end=found.end() == len(content) and not is_whole):
-                number = line + content.count(b"\n", 0, found.start())
+        for match in QUOTED.finditer(content):
+            if self._is_broken(match, is_at_end=match.end() == len(content) and not is_whole):
+                number = line + content.count(b"\n", 0, match.start())
                 raise FleetError(f"{self.path}: line {number} has a quote that nothing closes in its cell")
-            quoted[found.start() : found.end()] = True
+            quoted[match.start() : match.end()] = True
         ends = ends[~quoted[ends]]
         return int(ends[-1]) + 1 if len(ends) else 0
 
@@ -239,10 +239,10 @@ class CsvTable(AxisTable):
         if cells <= place + 1:
             return None
         try:
-            found = next(csv.reader([line]), [])
+            texts = next(csv.reader([line]), [])
         except csv.Error:
             return None
-        return (found[place] or None) if len(found) > place + 1 else None
+        return (texts[place] or None) if len(texts) > place + 1 else None
 
     @property
     def indices(self) -> Sequence[str]:
@@ -268,14 +268,16 @@ def _told(row: pacsv.InvalidRow) -> Sentence:
     return Sentence(WRONG_LENGTH, {**counts, "row": cut(row.text)})
 
 
-def _are_of_cells(given: NDArray[np.uint8], marks: NDArray[np.intp]) -> bool:
+def _are_of_cells(characters: NDArray[np.uint8], marks: NDArray[np.intp]) -> bool:
     """True where every second quote begins a cell, or goes on with one behind a doubled quote, and every other ends one
     or is the first of a doubled quote."""
     opening, closing = marks[::2], marks[1::2]
     separators = np.frombuffer(b",\r\n", np.uint8)
     doubled = opening[1:] == closing[: len(opening) - 1] + 1
-    begins = np.isin(given[opening - 1], separators) | (opening == 0)
-    ends = np.isin(given[np.minimum(closing + 1, len(given) - 1)], separators) | (closing == len(given) - 1)
+    begins = np.isin(characters[opening - 1], separators) | (opening == 0)
+    ends = np.isin(characters[np.minimum(closing + 1, len(characters) - 1)], separators) | (
+        closing == len(characters) - 1
+    )
     begins[1:] |= doubled
     ends[: len(doubled)] |= doubled
     return bool(begins.all() and ends.all())
@@ -317,12 +319,12 @@ def no_list(column: InputColumn) -> Reason:
 
 
 def _one_by_one(
-    cells: pa.Array, read: Any, wanted: pa.DataType, reason: Reason
+    cells: pa.Array, parse: Any, wanted: pa.DataType, reason: Reason
 ) -> tuple[pa.Array, list[tuple[int, Reason]]]:
     values, wrong = [], []
     for row, cell in enumerate(cells.to_pylist()):
         try:
-            values.append(None if cell is None else read(cell))
+            values.append(None if cell is None else parse(cell))
         except (ValueError, RecursionError):
             values.append(None)
             wrong.append((row, reason))

@@ -102,10 +102,10 @@ def _shortened(batch: RowBatch, starts: IntArray) -> tuple[RowBatch, IntArray]:
     counts = np.diff(np.append(starts, batch.rows.num_rows))
     if counts.max() <= MAXIMUM_PHASES + 1:
         return batch, starts
-    kept = np.arange(batch.rows.num_rows) - np.repeat(starts, counts) <= MAXIMUM_PHASES
-    moved = np.cumsum(kept) - 1
-    faults = [fault._replace(row=int(moved[fault.row])) for fault in batch.faults if kept[fault.row]]
-    return RowBatch(batch.rows.filter(pa.array(kept)), faults), moved[starts]
+    mask = np.arange(batch.rows.num_rows) - np.repeat(starts, counts) <= MAXIMUM_PHASES
+    moved = np.cumsum(mask) - 1
+    faults = [fault._replace(row=int(moved[fault.row])) for fault in batch.faults if mask[fault.row]]
+    return RowBatch(batch.rows.filter(pa.array(mask)), faults), moved[starts]
 
 
 def _listed(batch: RowBatch, starts: IntArray) -> RowBatch:
@@ -125,8 +125,8 @@ def _listed(batch: RowBatch, starts: IntArray) -> RowBatch:
 
 def _placed(faults: Sequence[CellFault], starts: IntArray) -> Iterator[CellFault]:
     """Faults of rows as those of the axes that begin at some of them, each once."""
-    given = {(fault.row, fault.column, fault.reason.text): fault for fault in faults}
-    for _, fault in sorted(given.items()):
+    distinct = {(fault.row, fault.column, fault.reason.text): fault for fault in faults}
+    for _, fault in sorted(distinct.items()):
         place = int(np.searchsorted(starts, fault.row, side="right")) - 1
         number = fault.row - int(starts[place]) + 1
         if (fault.column, fault.reason) != (AXIS, TOO_LONG):

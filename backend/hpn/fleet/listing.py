@@ -73,14 +73,14 @@ def listing_of(order: Order, answers: Iterator[pa.Table], catalogue: Catalogue) 
 
     summary = summary_of(noted())
     first = pa.concat_tables(pieces)
-    asked = _asked(order, first.filter(pc.is_valid(first["suitable"]))[AXIS])
-    return Listing(summary, with_nearest(first, asked, catalogue), asked)
+    open_axes = _asked(order, first.filter(pc.is_valid(first["suitable"]))[AXIS])
+    return Listing(summary, with_nearest(first, open_axes, catalogue), open_axes)
 
 
-def with_nearest(answers: pa.Table, asked: pa.Table, catalogue: Catalogue) -> pa.Table:
+def with_nearest(answers: pa.Table, open_axes: pa.Table, catalogue: Catalogue) -> pa.Table:
     """Answers beside which the nearest miss stands where no gear suits."""
     names = answers.filter(pc.equal(answers["suitable"], 0))[AXIS].combine_chunks()
-    lacking = asked.filter(pc.is_in(asked[AXIS], names))
+    lacking = open_axes.filter(pc.is_in(open_axes[AXIS], names))
     misses, places = nearest_misses(lacking, catalogue), pc.index_in(answers[AXIS], lacking[AXIS].combine_chunks())
     for field in NEAREST:
         answers = answers.append_column(field, misses[field.name].take(places))
@@ -101,14 +101,14 @@ def _asked(order: Order, names: pa.ChunkedArray) -> pa.Table:
 
 def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
     """The gear that `select` puts first for each of some sound axes that none suits, with what governs it."""
-    read = Axes(axes, catalogue)
+    batch = Axes(axes, catalogue)
     columns = dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
-    for gears, members in read.chunks():
-        evaluation = evaluate(read.duty(members), gears, catalogue)
+    for gears, members in batch.chunks():
+        evaluation = evaluate(batch.duty(members), gears, catalogue)
         best = _foremost(evaluation)
         used = np.take_along_axis(evaluation.utilisation, best, -1)[:, 0]
         governing = evaluation.governing_of(best[:, 0])
-        for index, row in enumerate(read.places[members].tolist()):
+        for index, row in enumerate(batch.places[members].tolist()):
             columns["nearest"][row] = evaluation.gears.rows[best[index, 0]].designation
             if not np.isnan(used[index]):
                 columns["nearest_check"][row] = evaluation.checks[governing[index]].code

@@ -83,7 +83,7 @@ def axes_in(rows: Sequence[Cells], faults: Sequence[CellFault] = ()) -> list[Tab
     places = dict[str, list[int]]()
     for place, row in enumerate(rows):
         places.setdefault(row.get(AXIS) or f" {place}", []).append(place)
-    return [_once(rows, found, lost) for found in places.values()]
+    return [_once(rows, numbers, lost) for numbers in places.values()]
 
 
 def _once(rows: Sequence[Cells], places: Sequence[int], lost: Mapping[int, Sequence[CellFault]]) -> TableAxis:
@@ -125,8 +125,8 @@ def _column(location: Location) -> str:
 
 def wrong_cells(row: Cells, place: int) -> list[CellFault]:
     """Faults of cells that their column does not take."""
-    found = ((name, _wrong(cell, MACHINE[name])) for name, cell in row.items() if name in MACHINE)
-    return [CellFault(place, name, *wrong) for name, wrong in found if wrong]
+    reasons = ((name, _wrong(cell, MACHINE[name])) for name, cell in row.items() if name in MACHINE)
+    return [CellFault(place, name, *wrong) for name, wrong in reasons if wrong]
 
 
 def in_row(fault: CellFault, numbers: Sequence[int]) -> CellFault:
@@ -164,9 +164,9 @@ def _wrong(cell: Any, column: InputColumn) -> tuple[Sentence, str] | None:
     if not isinstance(cell, list | tuple):
         return no_list(column)
     place, item = next(each for each in enumerate(cell, 1) if each[1] is not None and not _is(each[1], kind))
-    told = _told(template, item)
-    of_item = Sentence(OF_ITEM, {"number": str(place), "reason": told})
-    return (of_phase(place, told) if column.name in COLUMNS.phases else of_item), code
+    sentence = _told(template, item)
+    of_item = Sentence(OF_ITEM, {"number": str(place), "reason": sentence})
+    return (of_phase(place, sentence) if column.name in COLUMNS.phases else of_item), code
 
 
 def _told(template: str, cell: Any) -> Sentence:

@@ -35,8 +35,8 @@ def table_of(document: Frozen) -> pa.Table:
     required = [name for name, column in COLUMNS.phases.items() if column.required]
     kinds = {AXIS: pa.int64(), **{name: MACHINE[name].type for name in (*OF_MACHINE, *COLUMNS.all)}}
     kinds["quantity"] = pa.int64()
-    shown = [(name, kind) for name, kind in kinds.items() if name in used or name in (AXIS, "axis_name", *required)]
-    return pa.Table.from_pylist(rows, pa.schema(shown))
+    columns = [(name, kind) for name, kind in kinds.items() if name in used or name in (AXIS, "axis_name", *required)]
+    return pa.Table.from_pylist(rows, pa.schema(columns))
 
 
 def parquet(document: Frozen) -> bytes:
@@ -84,13 +84,13 @@ def _rest(text: str) -> Json:
     """Object of the column `rest`; raises ValidationError for any other text."""
     try:
         require_unique(text.encode(errors="replace"))
-        found = from_json(text, allow_inf_nan=False)
+        value = from_json(text, allow_inf_nan=False)
     except (ValueError, RecursionError):
-        found = None
-    if not isinstance(found, dict):
+        value = None
+    if not isinstance(value, dict):
         entry = InitErrorDetails(type=PydanticCustomError("rest", NO_OBJECT), loc=("rest",), input=text)
         raise ValidationError.from_exception_data(Axis.__name__, [entry])
-    return found
+    return value
 
 
 def _joined(one: Json, other: Json) -> Json:

@@ -49,10 +49,10 @@ def open_axes(
 
 
 def _require_file(path: Path) -> None:
-    found = status_of(path)
-    if found is None or not stat.S_ISREG(found.st_mode):
-        raise FleetError(f"{path}: {'is not a file' if found else 'there is no such file'}")
-    if not found.st_size:
+    status = status_of(path)
+    if status is None or not stat.S_ISREG(status.st_mode):
+        raise FleetError(f"{path}: {'is not a file' if status else 'there is no such file'}")
+    if not status.st_size:
         raise FleetError(f"{path}: is empty, where a table belongs")
 
 
@@ -63,9 +63,9 @@ def _require(table: AxisTable, allowed: list[str], required: list[str]) -> None:
     others += [f"column {name:.80} is there twice" for name, count in Counter(table.names).items() if count > 1]
     if not others:
         others += table.wrong_types()
-    if found := len(unknown) + len(others):
+    if wrong := len(unknown) + len(others):
         problems = [*(_unknown(name, allowed) for name in unknown[:MOST_PROBLEMS]), *others][:MOST_PROBLEMS]
-        more = [f"{found - MOST_PROBLEMS} more"] if found > MOST_PROBLEMS else []
+        more = [f"{wrong - MOST_PROBLEMS} more"] if wrong > MOST_PROBLEMS else []
         raise FleetError(f"{table.path}: {'; '.join([*problems, *more])}")
 
 

@@ -94,8 +94,8 @@ def outcome(
         if with_candidates:
             candidates.add(evaluation, places)
     faults = [placed(fault) for fault in _all_faults(batch, is_sound, catalogue)]
-    found = {"answers": answers.table(axis, faults), "rejected": _rejected(axis, faults)}
-    return found | ({"candidates": candidates.table(axis)} if with_candidates else {})
+    tables = {"answers": answers.table(axis, faults), "rejected": _rejected(axis, faults)}
+    return tables | ({"candidates": candidates.table(axis)} if with_candidates else {})
 
 
 # --- Answers ----------------------------------------------------------------------------------------------------------
@@ -120,32 +120,32 @@ class _Answers:
         """Take the answers of some axes."""
         suits = evaluation.verdict == SUITABLE
         count = suits.sum(axis=-1)
-        best, found, figures = evaluation.foremost(suits), count > 0, evaluation.case.figures
+        best, has_gear, figures = evaluation.foremost(suits), count > 0, evaluation.case.figures
         names = np.array([self._number(gear.designation) for gear in evaluation.gears.rows], np.int32)
         codes = np.array([CODES.index(check.code) for check in evaluation.checks], np.int32)
         rows = np.arange(len(places))
         self.suitable[places] = count
         self.average_torque_Nm[places] = evaluation.case.duty.average_torque_Nm[:, 0]
-        self.selected[places] = np.where(found, names[best], -1)
-        self.governing[places] = np.where(found, codes[evaluation.governing_of(best)], -1)
-        self.utilisation[places] = np.where(found, evaluation.utilisation[rows, best], np.nan)
+        self.selected[places] = np.where(has_gear, names[best], -1)
+        self.governing[places] = np.where(has_gear, codes[evaluation.governing_of(best)], -1)
+        self.utilisation[places] = np.where(has_gear, evaluation.utilisation[rows, best], np.nan)
         lives = (self.life_L10_h, figures.life_L10_h), (self.shortest_life_h, figures.shortest_life_h)
         for own, figure in (*lives, (self.limit_Nm, figures.motor_torque_limit_Nm)):
-            own[places] = np.where(found, figure[rows, best], np.nan)
-        self.shortest_life_of[places] = np.where(found, figures.shortest_life_of[rows, best], "")
+            own[places] = np.where(has_gear, figure[rows, best], np.nan)
+        self.shortest_life_of[places] = np.where(has_gear, figures.shortest_life_of[rows, best], "")
         if evaluation.worst is not None:
-            self._add_worst(evaluation.worst, places, best, found)
+            self._add_worst(evaluation.worst, places, best, has_gear)
         suits[rows, best] = False
         self.runner_up[places] = np.where(count > 1, names[evaluation.foremost(suits)], -1)
 
-    def _add_worst(self, worst: Worst, places: IntArray, best: IntArray, found: BoolArray) -> None:
+    def _add_worst(self, worst: Worst, places: IntArray, best: IntArray, has_gear: BoolArray) -> None:
         """Take the worst cases of the selected gears."""
         judged, rows = worst.evaluation, np.arange(len(places))
         codes = np.array([CODES.index(check.code) for check in judged.checks], np.int32)
-        found = found & worst.given
-        rated = found & (judged.verdict[rows, best] != UNRATED)
-        self.holds[places] = np.where(found, judged.verdict[rows, best] == SUITABLE, -1)
-        self.worst_utilisation[places] = np.where(found, judged.utilisation[rows, best], np.nan)
+        has_gear = has_gear & worst.given
+        rated = has_gear & (judged.verdict[rows, best] != UNRATED)
+        self.holds[places] = np.where(has_gear, judged.verdict[rows, best] == SUITABLE, -1)
+        self.worst_utilisation[places] = np.where(has_gear, judged.utilisation[rows, best], np.nan)
         self.worst_governing[places] = np.where(rated, codes[judged.governing[rows, best]], -1)
 
     def table(self, axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
@@ -191,20 +191,20 @@ def _finite(values: FloatArray) -> pa.Array:
 def _rejected(axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
     """A row for each fault."""
     rows = pa.array([fault.row for fault in faults], pa.int64())
-    told = [(fault.column, fault.code, fault.reason.text) for fault in faults]
-    texts = zip(*told, strict=True) if told else [(), (), ()]
+    reasons = [(fault.column, fault.code, fault.reason.text) for fault in faults]
+    texts = zip(*reasons, strict=True) if reasons else [(), (), ()]
     columns = [rows, axis.take(rows), *(pa.array(values, pa.string()) for values in texts)]
     return pa.Table.from_arrays(columns, schema=rejected_fields(axis.type))
 
 
 def _reasons(count: int, faults: Sequence[CellFault]) -> tuple[pa.Array, pa.Array]:
     """Faults of each axis in one text, and as they are kept; null where there are none."""
-    found = dict[int, list[CellFault]]()
+    by_row = dict[int, list[CellFault]]()
     for fault in faults:
-        found.setdefault(fault.row, []).append(fault)
+        by_row.setdefault(fault.row, []).append(fault)
     texts: list[str | None] = [None] * count
     cells = texts.copy()
-    for row, own in found.items():
+    for row, own in by_row.items():
         texts[row], cells[row] = text_of(own), kept(own)
     return pa.array(texts, pa.string()), pa.array(cells, pa.string())
 
@@ -214,16 +214,16 @@ def _all_faults(batch: RowBatch, is_sound: BoolArray, catalogue: Catalogue) -> l
     known: dict[int, list[CellFault]] = {row: [] for row in np.flatnonzero(~is_sound).tolist()}
     for fault in batch.faults:
         known[fault.row].append(fault)
-    for row, cells in cells_of(batch.rows, [row for row, found in known.items() if not found]):
+    for row, cells in cells_of(batch.rows, [row for row, faults in known.items() if not faults]):
         known[row] = _found(row, cells, catalogue)
-    return [fault for found in known.values() for fault in found[:MOST_FAULTS]]
+    return [fault for faults in known.values() for fault in faults[:MOST_FAULTS]]
 
 
 def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[CellFault]:
     """Faults of the lists, or else those that the models or the selection find."""
     faults = [] if cells.get(AXIS) is not None else [CellFault(row, AXIS, Sentence(REQUIRED), "missing")]
-    if found := faults + [CellFault(row, *fault) for fault in faults_of_lists(cells)]:
-        return found
+    if all_faults := faults + [CellFault(row, *fault) for fault in faults_of_lists(cells)]:
+        return all_faults
     try:
         application = Application.model_validate(COLUMNS.application_of(cells))
         gears_for(application, catalogue)

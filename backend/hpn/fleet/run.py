@@ -106,8 +106,8 @@ def size_fleet(
     with _alone(order.answers), ExitStack() as stack:
         outcomes = Outcomes(order.answers, table.axis_type, list(order.targets))
         stack.callback(outcomes.remove)
-        for found in engine(size, batches):
-            outcomes.add(found)
+        for result in engine(size, batches):
+            outcomes.add(result)
             watch(table.progress)
         outcomes.close()
         axis = pa.int64() if table.has_untyped_axes and outcomes.are_whole else table.written_axis_type

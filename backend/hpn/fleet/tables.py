@@ -164,10 +164,10 @@ def with_short_texts(batch: RowBatch) -> RowBatch:
 
 def _too_long(column: pa.Array) -> NDArray[np.bool_]:
     """Cells that are such a text, or a list with one."""
-    found = np.zeros(len(column), np.bool_)
+    mask = np.zeros(len(column), np.bool_)
     if is_text(column.type):
-        found |= np.asarray(pc.fill_null(pc.greater(pc.utf8_length(column), LONGEST_TEXT), False))
+        mask |= np.asarray(pc.fill_null(pc.greater(pc.utf8_length(column), LONGEST_TEXT), False))
     elif is_list(column.type) and is_text(column.type.value_type):
         items = _too_long(pc.list_flatten(column))
-        found[np.asarray(pc.list_parent_indices(column))[items]] = True
-    return found
+        mask[np.asarray(pc.list_parent_indices(column))[items]] = True
+    return mask

@@ -23,11 +23,11 @@ READ_AT_ONCE = 1024
 
 def have_tolerances(rows: pa.Table) -> BoolArray:
     """True for axes with something in a column of a tolerance, shape (N,)."""
-    given = np.zeros(rows.num_rows, np.bool_)
+    mask = np.zeros(rows.num_rows, np.bool_)
     for name in rows.column_names:
         if tolerance_column(name) is not None:
-            given |= np.asarray(pc.is_valid(rows[name]))
-    return given
+            mask |= np.asarray(pc.is_valid(rows[name]))
+    return mask
 
 
 def over_tolerances(rows: pa.Table, wanted: BoolArray, catalogue: Catalogue) -> Iterator[tuple[Evaluation, IntArray]]:
@@ -42,9 +42,9 @@ def over_tolerances(rows: pa.Table, wanted: BoolArray, catalogue: Catalogue) -> 
                 groups[gears_for(application, catalogue)].append((place, application, equipped))
             except (ValidationError, InputError):
                 continue  # its faults are found where those of all axes are
-        for gears, found in groups.items():
-            for chunk in chunks_of([len(application.duty_cycle.load_phases) for _, application, _ in found]):
-                some = [found[at] for at in chunk.tolist()]
+        for gears, rows_of_gears in groups.items():
+            for chunk in chunks_of([len(application.duty_cycle.load_phases) for _, application, _ in rows_of_gears]):
+                some = [rows_of_gears[at] for at in chunk.tolist()]
                 duty = Duty.of([equipped for _, _, equipped in some])
                 judged = with_worst([application for _, application, _ in some], evaluate(duty, gears, catalogue))
                 yield judged, np.array([place for place, _, _ in some], np.intp)

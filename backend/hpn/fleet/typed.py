@@ -59,15 +59,15 @@ class TypedTable(AxisTable):
 
     @property
     def axis_type(self) -> pa.DataType:
-        given = plain_type(self.given.field(AXIS).type)
-        if _may_be_whole(given):
+        type = plain_type(self.given.field(AXIS).type)
+        if _may_be_whole(type):
             return pa.int64()
-        return pa.string() if kinds.is_null(given) else given
+        return pa.string() if kinds.is_null(type) else type
 
     @property
     def written_axis_type(self) -> pa.DataType:
-        given = self.given.field(AXIS).type
-        return given if is_uuid(given) else self.axis_type
+        type = self.given.field(AXIS).type
+        return type if is_uuid(type) else self.axis_type
 
     @contextmanager
     def readable(self, where: str = "") -> Iterator[None]:
@@ -89,15 +89,15 @@ class TypedTable(AxisTable):
     def wrong_type(self, name: str) -> str:
         if name != AXIS and name not in self.columns:
             return ""
-        given = self.given.field(name).type
+        type = self.given.field(name).type
         if name == AXIS:
             is_right = is_text(self.axis_type) or kinds.is_integer(self.axis_type)
             wanted = "text, integers or UUIDs"
         else:
             column = self.columns[name]
-            is_right = column.takes(given, self.type_of(name))
+            is_right = column.takes(type, self.type_of(name))
             wanted = _words(column, self.type_of(name))
-        return "" if is_right else f"column {name} is {given!s:.80}, where {wanted} belong"
+        return "" if is_right else f"column {name} is {type!s:.80}, where {wanted} belong"
 
     def batch(self, rows: pa.RecordBatch) -> RowBatch:
         """Rows in the types that are read."""
@@ -120,34 +120,34 @@ def _words(column: InputColumn, wanted: pa.DataType) -> str:
 
 def _plain(column: pa.Array) -> pa.Array:
     """The values themselves, in the type that `plain_type` gives."""
-    given = column.type
-    if kinds.is_dictionary(given):
+    type = column.type
+    if kinds.is_dictionary(type):
         return _plain(column.dictionary).take(column.indices)
-    if kinds.is_run_end_encoded(given):
+    if kinds.is_run_end_encoded(type):
         return _plain(pc.run_end_decode(column))
-    if is_list(given) and not given.equals(plain_type(given)):
+    if is_list(type) and not type.equals(plain_type(type)):
         lengths = pc.list_value_length(column)
         ends = np.cumsum([0, *np.asarray(pc.fill_null(lengths, 0))])
         items = _plain(pc.list_flatten(column))
         return pa.ListArray.from_arrays(pa.array(ends, pa.int32()), items, mask=pc.is_null(lengths))
-    if is_uuid(given):
+    if is_uuid(type):
         return text_of(column)
-    return column.cast(pa.string()) if kinds.is_string_view(given) else column
+    return column.cast(pa.string()) if kinds.is_string_view(type) else column
 
 
 def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
     """The column in a type; decimals by their digits, which Arrow's own cast misses by a last bit in one of eight."""
-    given = column.type
-    if is_list(given) and kinds.is_decimal(given.value_type):
+    type = column.type
+    if is_list(type) and kinds.is_decimal(type.value_type):
         column = column.cast(pa.list_(pa.string()))
-    elif kinds.is_decimal(given) and kinds.is_floating(wanted):
+    elif kinds.is_decimal(type) and kinds.is_floating(wanted):
         column = column.cast(pa.string())
     return column if column.type.equals(wanted) else column.cast(wanted, safe=False)
 
 
-def _may_be_whole(given: pa.DataType) -> bool:
+def _may_be_whole(type: pa.DataType) -> bool:
     """True for axes that can be integers though their type is none: floats, as pandas makes of integers with a gap."""
-    return bool(kinds.is_floating(given) or (kinds.is_decimal(given) and given.scale == 0))
+    return bool(kinds.is_floating(type) or (kinds.is_decimal(type) and type.scale == 0))
 
 
 def _whole(column: pa.Array) -> tuple[pa.Array, NDArray[np.bool_]]:

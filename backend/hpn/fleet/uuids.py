@@ -12,9 +12,9 @@ PLACES = np.flatnonzero([mark != "-" for mark in str(UUID(int=0))])
 """Places of the digits in a text."""
 
 
-def is_uuid(given: pa.DataType) -> bool:
+def is_uuid(type: pa.DataType) -> bool:
     """True for the Arrow type of UUIDs."""
-    return isinstance(given, pa.UuidType)
+    return isinstance(type, pa.UuidType)
 
 
 def text_of(uuids: pa.Array) -> pa.Array:
@@ -25,8 +25,8 @@ def text_of(uuids: pa.Array) -> pa.Array:
     text = np.full((count, CHARACTERS), ord("-"), np.uint8)
     text[:, PLACES[::2]], text[:, PLACES[1::2]] = DIGITS[content >> 4], DIGITS[content & 15]
     starts = np.arange(count + 1, dtype=np.int32) * CHARACTERS
-    found = pa.Array.from_buffers(pa.string(), count, [None, pa.py_buffer(starts), pa.py_buffer(text.tobytes())])
-    return pc.if_else(uuids.is_valid(), found, pa.scalar(None, pa.string()))
+    texts = pa.Array.from_buffers(pa.string(), count, [None, pa.py_buffer(starts), pa.py_buffer(text.tobytes())])
+    return pc.if_else(uuids.is_valid(), texts, pa.scalar(None, pa.string()))
 
 
 def uuids_of(texts: pa.ChunkedArray) -> pa.Array:

@@ -62,15 +62,15 @@ class Outcomes:
         self.are_whole = True
         """True for axes that are all written as whole numbers."""
 
-    def add(self, found: Mapping[str, pa.Table]) -> None:
+    def add(self, tables: Mapping[str, pa.Table]) -> None:
         """Add the outcome of some axes."""
-        axes = found["answers"][AXIS]
+        axes = tables["answers"][AXIS]
         self._hashes.append(np.fromiter(map(hash, axes.drop_null().to_pylist()), np.int64))
         if self.are_whole and is_text(axes.type):
             self.are_whole = bool(pc.all(pc.match_substring_regex(axes, WHOLE), min_count=0).as_py())
         for kind, file in self._files.items():
-            columns = [column.combine_chunks() for column in found[kind].columns]
-            file.write_batch(pa.RecordBatch.from_arrays(columns, schema=found[kind].schema))
+            columns = [column.combine_chunks() for column in tables[kind].columns]
+            file.write_batch(pa.RecordBatch.from_arrays(columns, schema=tables[kind].schema))
 
     def close(self) -> None:
         """End the files; they can be read from then on."""
@@ -124,11 +124,11 @@ class Outcomes:
 
 def _whole(kind: str, table: pa.Table, answers: pa.Table, torn: frozenset[Any], seen: set[Any]) -> pa.Table:
     """Outcome of some axes, with one row for each torn one; those that were seen have had it."""
-    axes, kept = answers[AXIS].to_pylist(), list[bool]()
+    axes, mask = answers[AXIS].to_pylist(), list[bool]()
     for axis in axes:
-        kept.append(axis not in seen)
+        mask.append(axis not in seen)
         seen.update([axis] if axis in torn else [])
-    is_torn, stays = np.array([axis in torn for axis in axes], np.bool_), np.array(kept, np.bool_)
+    is_torn, stays = np.array([axis in torn for axis in axes], np.bool_), np.array(mask, np.bool_)
     if kind == "answers":
         return _with_error(table, is_torn).filter(pa.array(stays))
     table = table.filter(pa.array(~is_torn[np.asarray(table[ROW])]))
@@ -143,8 +143,8 @@ def _whole(kind: str, table: pa.Table, answers: pa.Table, torn: frozenset[Any], 
 def _with_error(answers: pa.Table, is_twice: NDArray[np.bool_]) -> pa.Table:
     """Answers in which a torn axis has an error and nothing else."""
     fault = CellFault(0, AXIS, TWICE, "repeated")
-    columns, told = [answers[AXIS]], {"error": text_of([fault]), FAULTS: kept([fault])}
+    columns, fields = [answers[AXIS]], {"error": text_of([fault]), FAULTS: kept([fault])}
     for field in list(answers.schema)[1:]:
-        instead = pa.scalar(told.get(field.name), field.type)
+        instead = pa.scalar(fields.get(field.name), field.type)
         columns.append(pc.if_else(pa.array(is_twice), instead, answers[field.name]))
     return pa.Table.from_arrays(columns, schema=answers.schema)

@@ -32,5 +32,5 @@ OF_AXIS: Mapping[str, str] = {"name": N_("Name"), "quantity": N_("Quantity"), "n
 
 def query_of(labels: Mapping[str, str]) -> str:
     """Tail of an address that gives labels: `&title=Axis+7`, nothing for blank ones."""
-    given = urlencode([(name, text.strip()) for name, text in labels.items() if text.strip()])
-    return f"&{given}" if given else ""
+    query = urlencode([(name, text.strip()) for name, text in labels.items() if text.strip()])
+    return f"&{query}" if query else ""

@@ -262,14 +262,14 @@ def mechanism_symbols(mechanism: str) -> tuple[Symbol, ...]:
     """
     model = CLASSES.get(mechanism, Rotary)
     hints = _OF_ROTARY if model is Rotary else _OF_TURNING
-    found = []
+    symbols = []
     for symbol in (BY_NAME[name] for name in _IN_FORM):
         field = model.model_fields.get(symbol.path[-1])
         if field is not None or (model is Rotary and symbol.name == "th0"):
             default = 0.0 if field is None else field.default
-            shown = f"{default:g}" if isinstance(default, float) else ""
-            found.append(replace(symbol, placeholder=shown, hint=hints.get(symbol.name, symbol.hint)))
-    return tuple(found)
+            text = f"{default:g}" if isinstance(default, float) else ""
+            symbols.append(replace(symbol, placeholder=text, hint=hints.get(symbol.name, symbol.hint)))
+    return tuple(symbols)
 
 
 _OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
@@ -321,8 +321,8 @@ _PLACES = {
 def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Symbol]:
     """Columns of phases or moves that a table has, the name first and the ramps of a move behind its speed."""
     by_name = {symbol.name: symbol for symbol in symbols}
-    shown = shown_columns(by_name, groups)
-    return [by_name[name] for name in sorted(shown, key=lambda name: _PLACES.get(name, len(_PLACES)))]
+    columns = shown_columns(by_name, groups)
+    return [by_name[name] for name in sorted(columns, key=lambda name: _PLACES.get(name, len(_PLACES)))]
 
 
 def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:

@@ -40,9 +40,9 @@ class Sides(str):
 
     def __new__(cls, parts: Iterable[Side]) -> "Sides":
         """A text that behaves as the tolerance in a link would."""
-        kept = tuple(parts)
-        text = super().__new__(cls, "/".join(f"{side.number}{'p' if side.is_percent else ''}" for side in kept))
-        text.parts = kept
+        own = tuple(parts)
+        text = super().__new__(cls, "/".join(f"{side.number}{'p' if side.is_percent else ''}" for side in own))
+        text.parts = own
         return text
 
 
@@ -59,10 +59,10 @@ def read(symbol: str, row: int | None, sides: Sides, mechanism: str | None) -> t
     path = path_of(symbol, row, mechanism)
     if path is None:
         return Sentence(UNKNOWN, {"symbol": symbol if row is None else f"{symbol}.{row + 1}"})
-    read = [_deviation(side) for side in sides.parts]
-    if wrong := [side for side in read if isinstance(side, Sentence)]:
+    deviations = [_deviation(side) for side in sides.parts]
+    if wrong := [side for side in deviations if isinstance(side, Sentence)]:
         return wrong[0]
-    values = [side for side in read if not isinstance(side, Sentence)]
+    values = [side for side in deviations if not isinstance(side, Sentence)]
     if not 0 < len(values) <= 2:
         return Sentence(NO_TOLERANCE)
     return path, values[0] if len(values) == 1 else dict(zip(("minus", "plus"), values, strict=True))

@@ -106,9 +106,18 @@ def _moves(motion: Motion) -> Iterator[str]:
 
 
 def _parts(application: Application) -> tuple[BaseModel | None, ...]:
-    asked, load = application.requirements, application.output_load
+    requirements, load = application.requirements, application.output_load
     stop = application.emergency_stop
-    return application.duty_cycle, stop, stop and stop.brake, load, load and load.drive, asked, application, asked.motor
+    return (
+        application.duty_cycle,
+        stop,
+        stop and stop.brake,
+        load,
+        load and load.drive,
+        requirements,
+        application,
+        requirements.motor,
+    )
 
 
 def _items(value: Any) -> Iterator[Any]:

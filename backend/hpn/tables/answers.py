@@ -28,10 +28,10 @@ class Answers:
     faults: tuple[Sentence, ...] = ()
 
 
-def answers_of(given: Sequence[str]) -> Answers:
+def answers_of(texts: Sequence[str]) -> Answers:
     """Answers of texts with a colon between column and meaning, or question and answer."""
-    pairs = [(name.strip(), meaning.strip()) for name, _, meaning in (text.rpartition(":") for text in given)]
-    faults = tuple(_said(NO_ANSWER, text) for text, (name, _) in zip(given, pairs, strict=True) if not name)
+    pairs = [(name.strip(), meaning.strip()) for name, _, meaning in (text.rpartition(":") for text in texts)]
+    faults = tuple(_said(NO_ANSWER, text) for text, (name, _) in zip(texts, pairs, strict=True) if not name)
     whole: dict[str, Any] = {name: meaning for name, meaning in pairs if name in NAMES}
     return Answers(Choices(of=ANY, **whole), [pair for pair in pairs if pair[0] and pair[0] not in NAMES], faults)
 
@@ -62,8 +62,8 @@ def _roles(inputs: Inputs) -> Mapping[str, str]:
 
 def _places(columns: Sequence[Column], name: str) -> list[int]:
     """Places of the columns of a heading, else of a number that counts from 1."""
-    found = [column.place for column in columns if column.heading.casefold() == " ".join(name.split()).casefold()]
-    return found or [column.place for column in columns if name == str(column.place + 1)]
+    places = [column.place for column in columns if column.heading.casefold() == " ".join(name.split()).casefold()]
+    return places or [column.place for column in columns if name == str(column.place + 1)]
 
 
 def _said(template: str, answer: str, **values: str) -> Sentence:

@@ -21,9 +21,9 @@ _WRONG = N_("can’t be calculated; write an expression such as =40*2")
 class _WrongError(ValueError):
     """The text is no sum; `told` says what is wrong with a number in it."""
 
-    def __init__(self, told: Sentence | None = None) -> None:
+    def __init__(self, sentence: Sentence | None = None) -> None:
         super().__init__()
-        self.told = told
+        self.told = sentence
 
 
 def worked_out(text: str, read: Callable[[str], str | Sentence | None]) -> str | Sentence:

@@ -94,9 +94,9 @@ def _with_axes(body: TableBody, columns: Sequence[Column]) -> TableBody:
     named = [row for row in (*body.totals, *body.titles) if AXIS in places and not is_blank(row.cells[places[AXIS]])]
     moving = [places[role] for role in ("T", "n") if role in places]
     numbered = [row for row in body.totals if any(is_number(row.cells[place]) for place in moving)]
-    kept = {row.number for row in (*named, *numbered)}
-    notes = tuple(note for note in body.notes if note.values.get("row") not in kept)
-    left = [row for row in body.totals if row.number not in kept and row.number not in body.numbers]
+    numbers = {row.number for row in (*named, *numbered)}
+    notes = tuple(note for note in body.notes if note.values.get("row") not in numbers)
+    left = [row for row in body.totals if row.number not in numbers and row.number not in body.numbers]
     return replace(body.including([*named, *numbered]), notes=(*notes, *(skipped(*row[::2]) for row in left)))
 
 
@@ -135,8 +135,8 @@ class _AxesInterpreter(Interpreter):
         times = self.read_times([Series(group.numbers, group.rows) for group in groups])
         self.ask_scale()
         loads = self._read_loads(groups)
-        read = () if self.questions.open else tuple(self._axis(group, times, loads) for group in groups)
-        lasting = [self._without_standing(axis, group) for axis, group in zip(read, groups, strict=False)]
+        axes = () if self.questions.open else tuple(self._axis(group, times, loads) for group in groups)
+        lasting = [self._without_standing(axis, group) for axis, group in zip(axes, groups, strict=False)]
         origins = {str(group.name): group.numbers for group in groups}
         origins |= {str(axis[AXIS]): numbers for axis, numbers in lasting}
         if self.standing:
@@ -148,10 +148,10 @@ class _AxesInterpreter(Interpreter):
         wrong, unknown, strange = list[_Place](), list[_Place](), list[_Place]()
         known = ""
         for number, cells, row in zip(self.body.numbers, self.body.rows, self.rows, strict=True):
-            for column, found in zip(self.used, row, strict=True):
+            for column, part in zip(self.used, row, strict=True):
                 cell = cells[column.place]
-                if found is not None:
-                    strange += [(number, cell)] if found.unit and not self.in_wire(found, column) else []
+                if part is not None:
+                    strange += [(number, cell)] if part.unit and not self.in_wire(part, column) else []
                 elif column.quantity and (unit := unit_behind(cell)) and not spellings.codes_for(unit):
                     unknown.append((number, cell))
                     known = known or known_units(column.quantity)
@@ -230,11 +230,11 @@ class _AxesInterpreter(Interpreter):
         columns = [
             column for column in self.columns if column.role in _OF_AXIS and _OF_AXIS[column.role][0] not in roles
         ]
-        given = [(column, [row[column.place] for row in group.cells]) for group, column in product(groups, columns)]
-        first = [column for column, cells in given if _stands_first(cells)]
+        series = [(column, [row[column.place] for row in group.cells]) for group, column in product(groups, columns)]
+        first = [column for column, cells in series if _stands_first(cells)]
         if not first:
             return "phase"
-        several = any(not is_blank(cell) for _, cells in given for cell in cells[1:])
+        several = any(not is_blank(cell) for _, cells in series for cell in cells[1:])
         template = N_("Column {name} has a number in the first row of an axis alone: where does the load act?")
         question = Sentence(template, {"name": first[0].called})
         return self.choose(LOADS, question, chosen="phase" if several else "")
@@ -256,8 +256,8 @@ class _AxesInterpreter(Interpreter):
             torques = [torque for _, row, number in rows if number in named and (torque := self.torque_of(row))]
             if torques:
                 self.stops[group.name] = max(torques, key=lambda torque: abs(float(torque)))
-            if kept := [row for row in rows if row[2] not in named]:
-                kept_groups.append(_Group(group.name, *zip(*kept, strict=True)))
+            if others := [row for row in rows if row[2] not in named]:
+                kept_groups.append(_Group(group.name, *zip(*others, strict=True)))
         return kept_groups
 
     # --- Values of an axis --------------------------------------------------------------------------------------------
@@ -284,13 +284,13 @@ class _AxesInterpreter(Interpreter):
                 values[column.held.place] = value
         return self._lasting(values, group, times)
 
-    def _number(self, cell: str, found: CellNumber | None, column: Column) -> float | str | None:
+    def _number(self, cell: str, number: CellNumber | None, column: Column) -> float | str | None:
         """A number in the unit of the wire; the cell as it is written where it is none, None where it is blank."""
-        value = self._value(found, column)
+        value = self._value(number, column)
         return value if value is not None or is_blank(cell) else str(cell)
 
-    def _value(self, found: CellNumber | None, column: Column) -> float | None:
-        number = self.in_wire(found, column) if found else ""
+    def _value(self, entry: CellNumber | None, column: Column) -> float | None:
+        number = self.in_wire(entry, column) if entry else ""
         return value if number and isfinite(value := float(number)) else None
 
     def _by_size(self, cell: str, column: Column) -> dict[str, float] | None:
@@ -304,19 +304,19 @@ class _AxesInterpreter(Interpreter):
     def _read(self, column: Column, decimal: Decimal, number: str) -> float | None:
         return self._value(entry(number, decimal, any_unit=True), column)
 
-    def _one(self, found: dict[str, CellNumber | None], column: Column) -> Any:
+    def _one(self, numbers: dict[str, CellNumber | None], column: Column) -> Any:
         """Value that the rows of an axis have in common; where they have two, these as they are written: no input."""
-        given = [cell for cell in found if not is_blank(cell)]
-        if not given or column.held is None:
+        cells = [cell for cell in numbers if not is_blank(cell)]
+        if not cells or column.held is None:
             return None
         many = column.held.many
         if many:
-            values: list[Any] = [_listed(cell, column.held.kind == "text", self.decimal or ".") for cell in given]
+            values: list[Any] = [_listed(cell, column.held.kind == "text", self.decimal or ".") for cell in cells]
         else:
-            values = [self._by_size(cell, column) or self._number(cell, found[cell], column) for cell in given]
+            values = [self._by_size(cell, column) or self._number(cell, numbers[cell], column) for cell in cells]
         if all(value == values[0] for value in values):
             return values[0]
-        written = " / ".join(given[:3])
+        written = " / ".join(cells[:3])
         return [written] if many else written
 
     def _lasting(self, values: dict[str, Any], group: _Group, times: str) -> dict[str, Any]:
@@ -332,12 +332,12 @@ class _AxesInterpreter(Interpreter):
     def _without_standing(self, axis: dict[str, Any], group: _Group) -> tuple[dict[str, Any], tuple[int, ...]]:
         """An axis without its phases that last 0 s, as of two rows with one stamp, and the numbers of its rows."""
         durations = axis.get(_DURATION, ())
-        kept = [k for k, duration in enumerate(durations) if duration != 0]
-        if not kept or len(kept) == len(durations):
+        places = [k for k, duration in enumerate(durations) if duration != 0]
+        if not places or len(places) == len(durations):
             return axis, group.numbers
         self.standing += [number for number, duration in zip(group.numbers, durations, strict=False) if duration == 0]
-        moving = {name: [value[k] for k in kept] if name in _OF_PHASE else value for name, value in axis.items()}
-        return moving, tuple(group.numbers[k] for k in kept) + group.numbers[len(durations) :]
+        moving = {name: [value[k] for k in places] if name in _OF_PHASE else value for name, value in axis.items()}
+        return moving, tuple(group.numbers[k] for k in places) + group.numbers[len(durations) :]
 
 
 _OF_PHASE = frozenset(each.place for each in (*PHASE, NAME))
@@ -359,5 +359,6 @@ def _listed(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:
         return [text.strip() for part in parts for text in part.split(",") if text.strip()]
     numbers = [entry(part, decimal) for part in parts]
     return [
-        part if read is None or read.unit else float(read.number) for part, read in zip(parts, numbers, strict=True)
+        part if number is None or number.unit else float(number.number)
+        for part, number in zip(parts, numbers, strict=True)
     ]

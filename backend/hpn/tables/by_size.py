@@ -30,9 +30,9 @@ class BySize(str):
 
     def __new__(cls, parts: Iterable[Part]) -> "BySize":
         """A text that behaves as its parts in a link would."""
-        kept = tuple(parts)
-        text = super().__new__(cls, ";".join(f"{size}:{number}" if size else number for size, number in kept))
-        text.parts = kept
+        own = tuple(parts)
+        text = super().__new__(cls, ";".join(f"{size}:{number}" if size else number for size, number in own))
+        text.parts = own
         return text
 
     def shown(self, numbers: Iterable[str], reader: Reader) -> str:
@@ -58,7 +58,7 @@ def by_size(text: str) -> BySize:
     return BySize(parts)
 
 
-def numbers_by_size(cell: str, read: Callable[[str], float | None]) -> dict[str, float] | None:
+def numbers_by_size(cell: str, number_of: Callable[[str], float | None]) -> dict[str, float] | None:
     """Numbers by size in a cell, typed or as an object of JSON, each as `read` reads it; None for any other cell."""
     parts = by_size(cell).parts
     if cell.lstrip().startswith("{"):
@@ -67,7 +67,7 @@ def numbers_by_size(cell: str, read: Callable[[str], float | None]) -> dict[str,
         except (ValueError, RecursionError):
             return None
         parts = tuple(Part(size, str(number)) for size, number in pairs)
-    numbers = {part.place: number for part in parts if (number := read(part.number)) is not None}
+    numbers = {part.place: number for part in parts if (number := number_of(part.number)) is not None}
     is_whole = len(numbers) == len(parts) and any(part.size for part in parts)
     return numbers if is_whole else None
 

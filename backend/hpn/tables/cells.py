@@ -116,8 +116,8 @@ def held_of(cell: str) -> tuple[str, str] | None:
     number, _, thousands = cell.partition(f" {THOUSANDS}") if isinstance(cell, Figure) else ("", "", "")
     if not thousands:
         return None
-    shown = Exact(number).scaleb(1 - len(thousands)).normalize()
-    return f"{shown:f}", number
+    decimal = Exact(number).scaleb(1 - len(thousands)).normalize()
+    return f"{decimal:f}", number
 
 
 def split_unit(text: str) -> tuple[str, str]:

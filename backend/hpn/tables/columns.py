@@ -152,8 +152,8 @@ def _is_text(cells: Sequence[str], kind: str, named: bool) -> bool:
 
 def by_units(written: Collection[str]) -> str:
     """Quantity that units alone stand for; a force may be radial or axial."""
-    found = {quantity for unit in written for quantity in quantities_of(unit)}
-    return next((role for role in REQUIRED if found == {QUANTITIES[role]}), "")
+    quantities = {quantity for unit in written for quantity in quantities_of(unit)}
+    return next((role for role in REQUIRED if quantities == {QUANTITIES[role]}), "")
 
 
 def counts(body: TableBody, place: int) -> bool:
@@ -199,10 +199,10 @@ def settled(
         held = {column.role for column in columns}
         columns = [_on_side(column, choices.side, held) for column in columns]
     roles = [column.role for column in columns if column.role not in ("", SKIP)]
-    found = [
+    fitting = [
         _answered(replace(column, doubled=roles.count(column.role) > 1), inputs.by_role, choices) for column in columns
     ]
-    return tuple(_with_unit(column, body, inputs, choices, assumed) for column in found)
+    return tuple(_with_unit(column, body, inputs, choices, assumed) for column in fitting)
 
 
 SIDES: Mapping[str, str] = {
@@ -253,12 +253,12 @@ def _with_unit(column: Column, body: TableBody, inputs: Inputs, choices: Choices
 
 def units_in(body: TableBody, place: int, *, any_unit: bool = False) -> set[str]:
     """Units behind the numbers of a column, a blank one for a number without."""
-    found = set()
+    units = set()
     for row in body.rows:
-        read = next(filter(None, (entry(row[place], decimal, any_unit=any_unit) for decimal in DECIMALS)), None)
-        if read is not None:
-            found.add(read.unit)
-    return found
+        cell = next(filter(None, (entry(row[place], decimal, any_unit=any_unit) for decimal in DECIMALS)), None)
+        if cell is not None:
+            units.add(cell.unit)
+    return units
 
 
 def written_units(headings: Sequence[str], wire: str) -> set[str]:
@@ -290,8 +290,8 @@ def _foreign_unit(headings: Sequence[str], held: Input) -> str:
     if held.kind == "text":
         return ""
     own = {held.unit, _plain(units.SYMBOLS.get(held.unit, ""))} - {""}
-    found = {_written_unit(text, held.unit or "1") for text in headings} - {"1"}
-    strange = [unit for unit in sorted(found) if unit not in own and _plain(unit) not in own]
+    others = {_written_unit(text, held.unit or "1") for text in headings} - {"1"}
+    strange = [unit for unit in sorted(others) if unit not in own and _plain(unit) not in own]
     return next((unit for unit in strange if _UNIT.search(unit) or spellings.codes_for(unit)), "")
 
 

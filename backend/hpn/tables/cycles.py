@@ -118,19 +118,19 @@ def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _Found
         return _Found(Table(problem=refused.sentence, separator=grid.separator))
 
 
-def _one_cycle(body: TableBody, asked: Questions) -> TableBody:
+def _one_cycle(body: TableBody, questions: Questions) -> TableBody:
     """A table as far as its rows are one cycle: those below a title may be of another."""
     for title in body.parting[:1]:
         template = N_("Row {row}, “{text}”, stands between the phases. Are they one cycle?")
         question = Sentence(template, {"row": title.number, "text": title.text[:40]})
-        if asked.choose(PARTS, question) == "first":
+        if questions.choose(PARTS, question) == "first":
             return body.above(title.number)
     return body
 
 
-def _without_totals(body: TableBody, columns: tuple[Column, ...], asked: Questions) -> TableBody:
+def _without_totals(body: TableBody, columns: tuple[Column, ...], questions: Questions) -> TableBody:
     """A table without the rows that are totals; of those that are only named so it is asked."""
-    reading = _CycleInterpreter(body, columns, Questions(asked.answers))
+    reading = _CycleInterpreter(body, columns, Questions(questions.answers))
     reading.read_numbers()
     sure = _totals_of(body, reading.used, reading.decimal or DECIMALS[0])
     open_ = [total for total in body.totals if total not in sure]
@@ -138,7 +138,7 @@ def _without_totals(body: TableBody, columns: tuple[Column, ...], asked: Questio
     if open_:
         listed = ", ".join(f"{total.number} ({total.text[:40]})" for total in open_[:MOST_NAMED])
         template = N_("Rows that may be phases, sums or other figures of the table: {rows}.")
-        chosen = asked.choose(TOTALS, Sentence(template, {"rows": listed}))
+        chosen = questions.choose(TOTALS, Sentence(template, {"rows": listed}))
     if chosen == "sum" and {total.number for total in body.totals}.issuperset(body.numbers):
         raise RefusedError(N_("there is a header, but no row of numbers below it"))
     left_out = body.totals if chosen == "sum" else sure
@@ -171,8 +171,8 @@ class _CycleInterpreter(Interpreter):
     def _stand_still(self) -> None:
         """Fill torque and speed of a pause that has a time alone with zeros."""
         for k, (cells, row) in enumerate(zip(self.body.rows, self.rows, strict=True)):
-            given = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
-            if given == {"t"} and any(map(is_pause, cells)):
+            roles = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
+            if roles == {"t"} and any(map(is_pause, cells)):
                 self.rows[k] = tuple(
                     CellNumber("0", column.held.unit if column.held and column.unit == CELLS else "")
                     if column.role in ("T", "n")
@@ -225,10 +225,10 @@ class _CycleInterpreter(Interpreter):
         self.rows = [self.rows[k] for k in places]
         self.body = self.body.of(places)
 
-    def require_numbers(self, read: Mapping[Decimal, Sequence[Row]]) -> None:
+    def require_numbers(self, rows_by_mark: Mapping[Decimal, Sequence[Row]]) -> None:
         """Raise RefusedError unless all cells that are used are numbers by one decimal mark."""
         wanted = sum(not is_blank(row[column.place]) for row in self.body.rows for column in self.used)
-        if any(sum(cell is not None for row in rows for cell in row) == wanted for rows in read.values()):
+        if any(sum(cell is not None for row in rows for cell in row) == wanted for rows in rows_by_mark.values()):
             return
         for number, row in zip(self.body.numbers, self.body.rows, strict=True):
             for column in self.used:
@@ -237,17 +237,17 @@ class _CycleInterpreter(Interpreter):
                     raise _no_number_of(number, cell, column)
         raise RefusedError(N_("the rows use different decimal marks: use a point or a comma throughout"))
 
-    def code(self, found: CellNumber, column: Column) -> str:
+    def code(self, number: CellNumber, column: Column) -> str:
         """Code of the unit that a number is in; raises RefusedError where the column says another, or it is unclear."""
-        code = super().code(found, column)
-        if not found.unit:
+        code = super().code(number, column)
+        if not number.unit:
             return code
-        codes = spellings.codes_for(found.unit, column.quantity)
-        cell = f"{found.number[:30]} {found.unit[:30]}"
+        codes = spellings.codes_for(number.unit, column.quantity)
+        cell = f"{number.number[:30]} {number.unit[:30]}"
         headed = column.unit != CELLS and bool(heading_over(self.body.headings[column.place]).units)
         if len(codes) > 1 and not headed:
             template = N_("{cell} in column {name} can be {first} or {second}; write one of them")
-            raise RefusedError(template, cell=cell, name=column.called, **either(codes, found.unit))
+            raise RefusedError(template, cell=cell, name=column.called, **either(codes, number.unit))
         if not code or (headed and code != column.unit):
             template = N_("{cell}: this unit does not fit column {name}; possible: {units}")
             taken = units.symbol_of_code(column.unit) if headed and column.unit else known_units(column.quantity)
@@ -272,8 +272,8 @@ class _CycleInterpreter(Interpreter):
 
     def _time_alone(self, row: Row) -> bool:
         """True where the last row has a time and nothing else."""
-        given = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
-        return given == {"t"} and all(is_blank(cell) or is_number(cell) for cell in self.body.rows[-1])
+        roles = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
+        return roles == {"t"} and all(is_blank(cell) or is_number(cell) for cell in self.body.rows[-1])
 
     def _sums(self) -> bool:
         """True where the last row takes as long as all others together, to three digits."""
@@ -353,14 +353,14 @@ def _sums_up(total: Labelled, rows: Sequence[Sequence[str]], used: Sequence[Colu
         cells = [row[column.place] for row in (total.cells, *rows) if not is_blank(row[column.place])]
         if cells and cells[0] is total.cells[column.place] and cells[0] != total.text:
             columns.append([_entry(cells[0], mark), *(entry(cell, mark) for cell in cells[1:])])
-    read = [[float(cell.number) if cell else nan for cell in column] for column in columns]
+    numbers = [[float(cell.number) if cell else nan for cell in column] for column in columns]
     of_one_unit = all(len({cell and cell.unit for cell in column}) == 1 for column in columns)
     figures = (sum, _mean, max, min)
     return (
         len(rows) > 1
         and of_one_unit
         and any(
-            all(isclose(first, figure(others or [nan]), rel_tol=THREE_DIGITS) for first, *others in read)
+            all(isclose(first, figure(others or [nan]), rel_tol=THREE_DIGITS) for first, *others in numbers)
             for figure in figures
         )
     )

@@ -74,8 +74,8 @@ def contents_of(content: bytes | str, wanted: TableBounds) -> Contents:
             from hpn.tables import records  # Arrow takes half a second to import
 
             readers = {PARQUET: records.parquet, ARROW: records.arrow, STREAM: records.arrow_stream}
-            read = next(read for mark, read in readers.items() if content.startswith(mark))
-            return _of_rows(*read(content, wanted.takes))
+            reader = next(reader for mark, reader in readers.items() if content.startswith(mark))
+            return _of_rows(*reader(content, wanted.takes))
         if content.startswith(GZIP):
             return _of_gzip(content, wanted)
         text = tidied(text_of(content))

@@ -244,8 +244,8 @@ def _bracketed(text: str) -> list[tuple[str, str]]:
 
 def _joined(parts: Sequence[tuple[str, str]], without: int | None = None) -> str:
     """Name of the parts of a text but for one, and for brackets that say nothing."""
-    kept = [part for k, (bracket, part) in enumerate(parts) if k != without and not (bracket and is_blank(part))]
-    return " ".join(" ".join(kept).split()).strip(" ,/")
+    others = [part for k, (bracket, part) in enumerate(parts) if k != without and not (bracket and is_blank(part))]
+    return " ".join(" ".join(others).split()).strip(" ,/")
 
 
 def _is_unit(text: str) -> bool:
@@ -282,7 +282,7 @@ def _qualified(folded: str) -> str:
     first, _, behind = folded.partition(" ")
     before, _, last = folded.rpartition(" ")
     ways = ((first, _NAMES.get(behind)), (last, _NAMES.get(before)))
-    return next((found for word, kind in ways if kind and (found := _QUALIFIED.get((word, kind)))), "")
+    return next((quantity for word, kind in ways if kind and (quantity := _QUALIFIED.get((word, kind)))), "")
 
 
 def _folded(name: str) -> str:
@@ -346,8 +346,8 @@ def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
     bare = [parts_of(" ".join(name.split()))[0] for name in names]
     bare = [name for name in bare if _folded(name) not in OF_LOAD and without_output(name)] or bare
     for name in (" ".join(bare), " ".join(reversed(bare))):
-        if (found := heading_of(name)).kind or found.meant:
-            return [found], name
+        if (whole := heading_of(name)).kind or whole.meant:
+            return [whole], name
     each = [heading_of(name) for name in bare]
     same = len({heading.kind for heading in each}) == 1
     return (each if same else [Heading("")]), " ".join(bare)

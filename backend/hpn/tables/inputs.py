@@ -104,11 +104,11 @@ class Inputs:
         """Role by the name of an input that all texts above a column make together, or by the same name in each."""
         if not self.has_axes:
             return ""
-        found = {role for text in headings if (role := self._role_of(text) or self._measured(text, said))}
+        roles = {role for text in headings if (role := self._role_of(text) or self._measured(text, said))}
         names = [text for text in headings if heading_of(text).kind != UNIT]
         if len(names) > 1:
-            found = {role} if (role := self._role_of(said.name)) else found if len(found) == len(names) == 1 else set()
-        return found.pop() if len(found) == 1 else ""
+            roles = {role} if (role := self._role_of(said.name)) else roles if len(roles) == len(names) == 1 else set()
+        return roles.pop() if len(roles) == 1 else ""
 
     def _role_of(self, heading: str) -> str:
         """Role by one of the names of an input, with or without a unit behind it."""

@@ -148,12 +148,12 @@ class Interpreter:
             return PreviewCell(text, kind="text" if column.held else "unread")
         marks = (self.decimal,) if self.decimal else DECIMALS
         numbers = {entry(cell, mark, any_unit=True) for mark in marks} - {None}
-        read = numbers.pop() if len(numbers) == 1 else None
-        if read is None:
+        number = numbers.pop() if len(numbers) == 1 else None
+        if number is None:
             return PreviewCell(text, kind="asked")
-        if column.held and (wire := in_wire(read, column)):
+        if column.held and (wire := in_wire(number, column)):
             return PreviewCell(wire, column.held.unit, "number", text)
-        return PreviewCell(*read, "number")
+        return PreviewCell(*number, "number")
 
     # --- Columns ------------------------------------------------------------------------------------------------------
 
@@ -222,32 +222,32 @@ class Interpreter:
     def ask_scale(self) -> None:
         """Ask which number counts where a workbook shows one in thousands of the one that a cell holds."""
         scaled = [self.body.scaled[column.place] for column in self.used if column.place in self.body.scaled]
-        for shown, held in scaled[:1]:
+        for text, held in scaled[:1]:
             template = N_("The workbook shows {shown} where the cell holds {held}. Which number counts?")
-            numbers = {"shown": shown, "held": held}
+            numbers = {"shown": text, "held": held}
             self.choose(SCALES, Sentence(template, {**numbers}), numbers=numbers)
 
     def read_numbers(self) -> None:
         """Read the numbers of the used columns by their decimal mark, which is asked where it has two readings."""
-        read = {mark: [self._row(row, mark) for row in self.body.rows] for mark in DECIMALS}
-        self.require_numbers(read)
-        self.decimal = self._mark(read)
+        rows_by_mark = {mark: [self._row(row, mark) for row in self.body.rows] for mark in DECIMALS}
+        self.require_numbers(rows_by_mark)
+        self.decimal = self._mark(rows_by_mark)
         if self.decimal:
-            self.rows = read[self.decimal]
+            self.rows = rows_by_mark[self.decimal]
         else:
-            pairs = zip(*read.values(), strict=True)
+            pairs = zip(*rows_by_mark.values(), strict=True)
             self.rows = [tuple(one or other for one, other in zip(*pair, strict=True)) for pair in pairs]
 
     def _row(self, row: Sequence[str], mark: Decimal) -> Row:
         cells = (row[column.place] for column in self.used)
         return tuple(None if is_blank(cell) else entry(cell, mark, any_unit=self.any_unit) for cell in cells)
 
-    def require_numbers(self, read: Mapping[Decimal, Sequence[Row]]) -> None:
+    def require_numbers(self, rows_by_mark: Mapping[Decimal, Sequence[Row]]) -> None:
         """Raise RefusedError where a cell that is no number spoils the table."""
 
-    def _mark(self, read: Mapping[Decimal, Sequence[Row]]) -> Decimal | None:
+    def _mark(self, rows_by_mark: Mapping[Decimal, Sequence[Row]]) -> Decimal | None:
         """The mark by which most cells are numbers; asked where two would give different ones, or both are written."""
-        pairs = list(zip(*(chain.from_iterable(rows) for rows in read.values()), strict=True))
+        pairs = list(zip(*(chain.from_iterable(rows) for rows in rows_by_mark.values()), strict=True))
         counts = [sum(pair[k] is not None for pair in pairs) for k in (0, 1)]
         alone = [next((k for k, pair in enumerate(pairs) if pair[j] and not pair[1 - j]), None) for j in (0, 1)]
         differing = next((pair for pair in pairs if pair[0] != pair[1] and all(pair)), None)
@@ -267,13 +267,13 @@ class Interpreter:
         row, column = divmod(place, len(self.used))
         return self.body.rows[row][self.used[column].place]
 
-    def code(self, found: CellNumber, column: Column) -> str:
+    def code(self, number: CellNumber, column: Column) -> str:
         """Code of the unit that a number is in; a kind of table may raise RefusedError."""
-        return code_of(found, column)
+        return code_of(number, column)
 
-    def in_wire(self, found: CellNumber, column: Column) -> str:
+    def in_wire(self, number: CellNumber, column: Column) -> str:
         """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
-        return in_wire(found, column, self.code)
+        return in_wire(number, column, self.code)
 
     def torque_of(self, row: Row) -> str:
         """Torque of a row in the unit of the wire, blank where it has none."""
@@ -349,8 +349,8 @@ class Interpreter:
         template = N_("The times go back in row {rows}, first from {before} to {after}. What is it?")
         question = Sentence(template, {**self._fall(*falling[0]), "rows": listed})
         unit_s = self._seconds_of_unit()
-        found = [] if dated else laps_of([times for _, times in falling], unit_s)
-        laps = {MIDNIGHT if lap == DAY else str(lap): lap for lap in found}
+        rounds = [] if dated else laps_of([times for _, times in falling], unit_s)
+        laps = {MIDNIGHT if lap == DAY else str(lap): lap for lap in rounds}
         options = {code: OF_FALLS.get(code, OF_COUNTER) for code in (*laps, *self.ways_back)}
         numbers = {code: in_plain(lap / unit_s) for code, lap in laps.items() if code != MIDNIGHT}
         chosen = self.choose(replace(FALLS, options=options), question, numbers=numbers)
@@ -360,8 +360,8 @@ class Interpreter:
     def _seconds_of_unit(self) -> Fraction:
         """Seconds of the unit that times are written in."""
         place = next(k for k, column in enumerate(self.used) if column.role == "t")
-        read = [(self.seconds(row), Fraction(cell.number)) for row in self.rows if (cell := row[place])]
-        return next((seconds / number for seconds, number in read if seconds and number), Fraction(1))
+        pairs = [(self.seconds(row), Fraction(cell.number)) for row in self.rows if (cell := row[place])]
+        return next((seconds / number for seconds, number in pairs if seconds and number), Fraction(1))
 
     def mend(self, fall: str) -> None:
         """Change the rows by what a time that goes back was said to be."""
@@ -371,25 +371,25 @@ class Interpreter:
         return bool(going_on)
 
 
-def code_of(found: CellNumber, column: Column) -> str:
+def code_of(number: CellNumber, column: Column) -> str:
     """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
-    if not found.unit:
+    if not number.unit:
         return column.unit
-    codes = spellings.codes_for(found.unit, column.quantity) if column.quantity else ()
+    codes = spellings.codes_for(number.unit, column.quantity) if column.quantity else ()
     return codes[0] if len(codes) == 1 else ""
 
 
-def in_wire(found: CellNumber, column: Column, code_of: Callable[[CellNumber, Column], str] = code_of) -> str:
+def in_wire(number: CellNumber, column: Column, code_of: Callable[[CellNumber, Column], str] = code_of) -> str:
     """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
-    if found.unit == PERCENT:
-        return str(decimals.Decimal(found.number).scaleb(-2)) if column.role in SHARES else ""
+    if number.unit == PERCENT:
+        return str(decimals.Decimal(number.number).scaleb(-2)) if column.role in SHARES else ""
     if column.held is None or not column.quantity:
-        return "" if found.unit else found.number
-    if not (code := code_of(found, column)):
+        return "" if number.unit else number.number
+    if not (code := code_of(number, column)):
         return ""
     measure = units.entered(column.held.unit, code)
-    value = inf if measure.same else measure.wire(found.number)
-    return written(value) if isfinite(value) else found.number
+    value = inf if measure.same else measure.wire(number.number)
+    return written(value) if isfinite(value) else number.number
 
 
 def unit_behind(cell: str) -> str:

@@ -68,14 +68,14 @@ def section_of(number_format: str, value: float) -> Section | None:
     if len({section.thousands for section in numbers}) > len({section.unit for section in numbers}):
         return None
     if not any(section.condition for section in sections):
-        shown = [sections[0]] if value >= 0 or len(sections) == 1 else [sections[1]]
+        candidates = [sections[0]] if value >= 0 or len(sections) == 1 else [sections[1]]
     elif all(section.condition for section in sections[:-1]):
-        shown = [section for section in sections if section.holds(value)]
+        candidates = [section for section in sections if section.holds(value)]
     else:
-        shown = []
+        candidates = []
     if not value:
-        shown = [section for section in shown if section.number] or numbers
-    return shown[0] if shown else None
+        candidates = [section for section in candidates if section.number] or numbers
+    return candidates[0] if candidates else None
 
 
 @lru_cache(maxsize=1000)
@@ -92,8 +92,8 @@ def _sections(number_format: str) -> list[Section]:
             section.condition = token["said"] if _CONDITION.fullmatch(token["said"]) else section.condition
         else:
             section.percent |= token["other"] == "%"
-            shown = token["quoted"] or token["escaped"] or token["marked"] or token["other"] or ""
-            text = " " if token["gap"] else "" if shown == token["other"] and shown in _UNSHOWN else shown
+            literal = token["quoted"] or token["escaped"] or token["marked"] or token["other"] or ""
+            text = " " if token["gap"] else "" if literal == token["other"] and literal in _UNSHOWN else literal
             section.before, section.behind = (
                 (section.before, section.behind + text) if section.number else (section.before + text, section.behind)
             )

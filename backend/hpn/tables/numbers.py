@@ -253,7 +253,7 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
     """Value that a text stands for, or what to write instead; `mostly_whole` where hardly anyone means decimals."""
     if isinstance(text, Entry) and text.refusal:
         return text.refusal
-    given, text = text, text.strip()
+    original, text = text, text.strip()
     if kind == "text":
         return text if len(text) <= LONGEST_TEXT else Sentence(N_("is too long"))
     if kind == "flag":
@@ -266,7 +266,7 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
         return Sentence(N_("is too large"))
     if _is_too_small(plain, value):
         return Sentence(N_("is too small"))
-    with_comma = isinstance(given, Entry) and "," in given.shown
+    with_comma = isinstance(original, Entry) and "," in original.shown
     if (mostly_whole or kind == "whole") and not with_comma and _IN_GROUPS.fullmatch(plain):
         decimal = _without_zeros(plain)
         return _to_write([decimal, plain.replace(".", "")][kind == "whole" and "." in decimal :])
@@ -321,5 +321,5 @@ def _to_write(readings: Sequence[str], unit: str = "", *, whole: bool = True) ->
 
 def _readings(text: str) -> list[str]:
     """Numbers that a text may stand for under either decimal mark; `1,234` is either of two."""
-    found = (plain_number(text.removesuffix(","), decimal) for decimal in reversed(DECIMALS))
-    return [number for number in dict.fromkeys(found) if number]
+    numbers = (plain_number(text.removesuffix(","), decimal) for decimal in reversed(DECIMALS))
+    return [number for number in dict.fromkeys(numbers) if number]

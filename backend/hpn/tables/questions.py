@@ -25,8 +25,8 @@ class Questions:
         answer: str = getattr(self.answers, choice.name)
         if answer in choice.options:
             more["chosen"] = answer
-        found = replace(choice, question=question, **more)
-        self.choices.append(found)
-        if not found.chosen:
+        current = replace(choice, question=question, **more)
+        self.choices.append(current)
+        if not current.chosen:
             self.open.append(question)
-        return found.chosen
+        return current.chosen

@@ -42,19 +42,19 @@ def reading_of(
 
     A column without a unit is in one that is `assumed`.
     """
-    found = contents_of(content, wanted)
-    if found.problem:
-        return Reading(text=found.text, table=Table(problem=found.problem))
-    if found.suffix or found.is_application:
-        return Reading(text=found.text, suffix=found.suffix, is_application=found.is_application)
-    of = _mark_of(found.text or content)
+    contents = contents_of(content, wanted)
+    if contents.problem:
+        return Reading(text=contents.text, table=Table(problem=contents.problem))
+    if contents.suffix or contents.is_application:
+        return Reading(text=contents.text, suffix=contents.suffix, is_application=contents.is_application)
+    of = _mark_of(contents.text or content)
     if choices.of not in (of, ANY):
         choices = NO_CHOICES
-    sheets = tuple(found.sheets)
+    sheets = tuple(contents.sheets)
     first = sheets[0] if len(sheets) == 1 or wanted.inputs.has_axes else ""
     sheet = choices.sheet if choices.sheet in sheets else first
-    table = _table(found.sheets[sheet], wanted, choices, assumed) if sheet in sheets else None
-    return Reading(of=of, text=found.text, sheets=sheets, sheet=sheet, table=table)
+    table = _table(contents.sheets[sheet], wanted, choices, assumed) if sheet in sheets else None
+    return Reading(of=of, text=contents.text, sheets=sheets, sheet=sheet, table=table)
 
 
 def _mark_of(content: bytes | str) -> str:
@@ -62,11 +62,11 @@ def _mark_of(content: bytes | str) -> str:
     return hashlib.sha256(content).hexdigest()[:16]
 
 
-def _table(found: Sequence[Grid] | Sentence, wanted: TableBounds, choices: Choices, assumed: Collection[str]) -> Table:
+def _table(sheets: Sequence[Grid] | Sentence, wanted: TableBounds, choices: Choices, assumed: Collection[str]) -> Table:
     """The table of a sheet; of axes the reading that knows most columns, out of those by each separator."""
-    if isinstance(found, Sentence):
-        return Table(problem=found)
+    if isinstance(sheets, Sentence):
+        return Table(problem=sheets)
     if wanted.inputs.has_axes:
-        tables = [read_axes(grid, wanted.inputs, choices, assumed) for grid in found]
+        tables = [read_axes(grid, wanted.inputs, choices, assumed) for grid in sheets]
         return max(tables, key=lambda table: sum(bool(column.role) for column in table.columns))
-    return with_outcomes(read_grids(found, choices, assumed), found, choices, assumed)
+    return with_outcomes(read_grids(sheets, choices, assumed), sheets, choices, assumed)

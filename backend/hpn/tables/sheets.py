@@ -122,20 +122,20 @@ def grid_of(rows: Iterable[Sequence[str]], separator: str = "", numbers: Iterabl
     Raises RefusedError for none, and for more cells than the longest cycle has.
     """
     room = CellBudget()
-    kept = list[tuple[int, Sequence[str], int]]()
+    full = list[tuple[int, Sequence[str], int]]()
     for number, row in zip(itertools.count(1) if numbers is None else numbers, rows, strict=False):
         if any(row):
             room.take(row)
-            kept.append((number, row, len(row)))
-    if not kept:
+            full.append((number, row, len(row)))
+    if not full:
         raise RefusedError(N_("the text is empty"))
-    if len(kept) * max(len(row) for _, row, _ in kept) > MOST_CELLS:
+    if len(full) * max(len(row) for _, row, _ in full) > MOST_CELLS:
         raise too_many_cells()
-    columns = list(zip_longest(*(row for _, row, _ in kept), fillvalue=""))
+    columns = list(zip_longest(*(row for _, row, _ in full), fillvalue=""))
     while not any(columns[-1]):
         columns.pop()
     cells = tuple(zip(*columns, strict=True))
-    return Grid(cells, tuple(k for k, _, _ in kept), separator, counts=tuple(width for _, _, width in kept))
+    return Grid(cells, tuple(k for k, _, _ in full), separator, counts=tuple(width for _, _, width in full))
 
 
 def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = MAXIMUM_CHARACTERS) -> list[Grid]:

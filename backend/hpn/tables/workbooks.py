@@ -138,8 +138,8 @@ def _read(content: bytes) -> Sheets:
     room = CellBudget(MOST_CELLS_OF_BOOK)
     with suppress(AttributeError):  # sheets of charts have no cells
         for sheet in book.worksheets[:MOST_SHEETS]:
-            if sheet.sheet_state == "visible" and (read := _sheet(Worksheet(sheet), room)).rows:
-                sheets[sheet.title[:LONGEST_NAME]] = read
+            if sheet.sheet_state == "visible" and (grid := _sheet(Worksheet(sheet), room)).rows:
+                sheets[sheet.title[:LONGEST_NAME]] = grid
     return sheets
 
 

@@ -118,8 +118,8 @@ def draft_of(
     """Record of an application to be saved: its own JSON and the reply of `select`; InputError as there."""
     selection = select(application, catalogue, to_link)
     code = _ordered(catalogue, selection, labels.ordering_code)
-    shown = selection.foremost if code is None else selection.candidate(code.gear.designation)
-    assert shown is not None  # `_ordered` refuses what is no candidate
+    candidate = selection.foremost if code is None else selection.candidate(code.gear.designation)
+    assert candidate is not None  # `_ordered` refuses what is no candidate
     revision, cycle = labels.revision or "", application.duty_cycle
     return Draft(
         application=application.model_dump_json(exclude_unset=True).encode(),
@@ -132,13 +132,13 @@ def draft_of(
         author=labels.author,
         revision=labels.revision,
         ordering_code=None if code is None else code.text,
-        designation=shown.designation,
-        status=shown.status,
-        utilisation=shown.utilisation,
+        designation=candidate.designation,
+        status=candidate.status,
+        utilisation=candidate.utilisation,
         idempotency_key=key,
         owner=owner,
         catalogue=catalogue,
-        answer=columns_of(answers.answer_of(selection, shown, catalogue)),
+        answer=columns_of(answers.answer_of(selection, candidate, catalogue)),
         phases=len(cycle.motion.moves if cycle.motion else cycle.phases or ()),
         label=revision if is_label(revision) else SAVED,
     )
@@ -163,8 +163,8 @@ def _link(saved: SavedSelection, selection: Selection, catalogue: Catalogue) -> 
     gear, code = "", read_ordering_code(catalogue, saved.ordering_code or "")
     if isinstance(code, OrderingCode):
         labels |= code.labels
-        shown = code.gear.designation
-        gear = "" if shown == selection.foremost.designation else f"&gear={shown}"
+        designation = code.gear.designation
+        gear = "" if designation == selection.foremost.designation else f"&gear={designation}"
     return selection.link + gear + query_of(labels)
 
 
@@ -217,16 +217,16 @@ UNREADABLE = N_("What was saved here can’t be read: parts are missing that the
 def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) -> Reopened:
     """Ask today's engine and catalogue again, and compare; what was saved stays as it is."""
     before = answer_of(saved)
-    application, after, found, problem = None, None, list[Difference](), None
+    application, after, changes, problem = None, None, list[Difference](), None
     try:
         application = Application.model_validate_json(saved.application)
         after = select(application, catalogue, to_link)
-        found = differences(fields_of(saved.result), after)
+        changes = differences(fields_of(saved.result), after)
     except (ValidationError, InputError) as error:
         problem = Problem.of(error)
     link = _link(saved, after or before, catalogue)
     figures = _figures(before, application, then, catalogue)
-    return Reopened(saved, before, application, after, found, problem, link, then, figures)
+    return Reopened(saved, before, application, after, changes, problem, link, then, figures)
 
 
 def _figures(

@@ -36,17 +36,17 @@ def drafts_in(
 
     `origins` are the rows of a table of cells that the phases of an axis stand in.
     """
-    found = axes_in(rows, faults)
-    asked = [AxisQuestion(resolve(each.axis.application, {}), each.axis.ordering_code) for each in found]
-    judged = zip(found, answers(asked, catalogue), strict=True)
+    axes = axes_in(rows, faults)
+    questions = [AxisQuestion(resolve(each.axis.application, {}), each.axis.ordering_code) for each in axes]
+    judged = zip(axes, answers(questions, catalogue), strict=True)
     return [_draft(each, answer, origins.get(each.name or "", ())) for each, answer in judged]
 
 
-def _draft(found: TableAxis, answer: AxisAnswer, numbers: Sequence[int]) -> AxisDraft:
-    axis = found.axis
-    if found.faults and answer.status != "open":  # whatever the models make of it, a cell of it is wrong
+def _draft(row: TableAxis, answer: AxisAnswer, numbers: Sequence[int]) -> AxisDraft:
+    axis = row.axis
+    if row.faults and answer.status != "open":  # whatever the models make of it, a cell of it is wrong
         axis, answer = Axis(), AxisAnswer("open", catalogue_version=answer.catalogue_version)
-    return replace(draft_of(axis, _placed(found.faults, answer, numbers)), name=found.name)
+    return replace(draft_of(axis, _placed(row.faults, answer, numbers)), name=row.name)
 
 
 def _placed(faults: Sequence[CellFault], answer: AxisAnswer, numbers: Sequence[int]) -> AxisAnswer:
@@ -55,6 +55,8 @@ def _placed(faults: Sequence[CellFault], answer: AxisAnswer, numbers: Sequence[i
         faults = [located(0, each.location, each.told, each.code) for each in answer.faults]
     if not faults:
         return answer
-    told = (in_row(fault, numbers) for fault in faults[:MOST_FAULTS])
-    of_cells = tuple(AxisFault.at(f"/{fault.column.replace('.', '/')}", fault.reason, fault.code) for fault in told)
+    faults_in_rows = (in_row(fault, numbers) for fault in faults[:MOST_FAULTS])
+    of_cells = tuple(
+        AxisFault.at(f"/{fault.column.replace('.', '/')}", fault.reason, fault.code) for fault in faults_in_rows
+    )
     return structs.replace(answer, faults=of_cells)

@@ -67,8 +67,8 @@ def common_of(machine: Machine) -> Json:
 
 def drafts_of(axes: Sequence[Axis], common: Mapping[str, Any], catalogue: Catalogue) -> list[AxisDraft]:
     """Axes to be kept, all of them answered together."""
-    asked = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in axes]
-    return [draft_of(axis, answer) for axis, answer in zip(axes, answers(asked, catalogue), strict=True)]
+    questions = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in axes]
+    return [draft_of(axis, answer) for axis, answer in zip(axes, answers(questions, catalogue), strict=True)]
 
 
 def draft_of(axis: Axis, answer: AxisAnswer) -> AxisDraft:

@@ -171,8 +171,10 @@ def plan_patches(
         other = inverse(own_values(axis), patch)
         back.setdefault(json_of({"back": other, "patch": patch}), ([], other, patch))[0].append(axis.number)
     undo = Undo(tuple(AxesPatch(tuple(numbers), other, patch) for numbers, other, patch in back.values()))
-    found = {number: draft for number, _, draft in changed}
-    return Plan(Change(machine.version, by, changed=changed), undo, effect_of(machine, found, catalogue), _gears(found))
+    by_number = {number: draft for number, _, draft in changed}
+    return Plan(
+        Change(machine.version, by, changed=changed), undo, effect_of(machine, by_number, catalogue), _gears(by_number)
+    )
 
 
 def plan_common(machine: Machine, common: Json, catalogue: Catalogue, by: str | None) -> Plan:

@@ -144,12 +144,12 @@ async def size_fleet(request: Request, tables: Tables, *, candidates: bool = Fal
     written = {str(kind): path for kind, path in files.items()}
     order = Order(tables.input, ignored=tables.ignored, **written)
     work = partial(sized, order, request.app.state.catalogue, settings.fleet_workers)
-    found = await worked(request, work, tables.input.parent)
-    if found.refusal:
-        raise Problem(422, _in_words_of_the_caller(found.refusal, tables))
-    if found.code:
-        raise spool.refusal(found.code)
-    return Files(files, found.ignored)
+    summary = await worked(request, work, tables.input.parent)
+    if summary.refusal:
+        raise Problem(422, _in_words_of_the_caller(summary.refusal, tables))
+    if summary.code:
+        raise spool.refusal(summary.code)
+    return Files(files, summary.ignored)
 
 
 async def worked(request: Request, work: Callable[[], T], folder: Path | None = None) -> T:

@@ -86,7 +86,7 @@ def _axis(axis: SavedAxis, draft: Draft) -> SavedAxis:
 
 async def revision(request: Request, id: str, label: str) -> tuple[RevisionLine, bytes]:
     """The revision of a label in any case, and what is frozen in it; Problem 404."""
-    kept: tuple[RevisionLine, bytes] | None = await request.app.state.store.revision(id, label)
-    if kept is None:
+    frozen: tuple[RevisionLine, bytes] | None = await request.app.state.store.revision(id, label)
+    if frozen is None:
         raise Problem(404, f"there is no revision {label[:20]!r}")
-    return kept
+    return frozen

@@ -172,21 +172,21 @@ def require_document(request: Request, machine: Machine) -> None:
 
 def answered(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) -> list[tuple[int, int, Answer]]:
     """Answers of the axes of a document under common values, as a change has them."""
-    asked = [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in machine.items]
+    questions = [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in machine.items]
     return [
         (axis.number, axis.version, columns_of(answer))
-        for axis, answer in zip(machine.items, answers(asked, catalogue), strict=True)
+        for axis, answer in zip(machine.items, answers(questions, catalogue), strict=True)
     ]
 
 
 def selection_of(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes:
     """JSON of the selection of an axis; Problem 409 for one that is open."""
-    found = resolved(axis, common_of(machine))
-    if found.application is None:
-        faults = [Fault(location, sentence.text, code) for location, sentence, code in found.faults]
+    application = resolved(axis, common_of(machine))
+    if application.application is None:
+        faults = [Fault(location, sentence.text, code) for location, sentence, code in application.faults]
         raise Problem(409, "the axis is open: its application is incomplete, or has errors", faults)
     try:
-        return encode_selection(select(found.application, catalogue, to_link))
+        return encode_selection(select(application.application, catalogue, to_link))
     except InputError as error:
         raise Problem(409, str(error), Problem.of(error).errors) from None
 
@@ -196,8 +196,8 @@ def of_today(machine: Machine, catalogue: Catalogue) -> Machine:
     today = (ENGINE_VERSION, catalogue.version)
     if all((axis.answer["engine_version"], axis.answer["catalogue_version"]) == today for axis in machine.items):
         return machine
-    found = answered(machine, common_of(machine), catalogue)
-    items = [replace(axis, answer=answer) for axis, (_, _, answer) in zip(machine.items, found, strict=True)]
+    fresh = answered(machine, common_of(machine), catalogue)
+    items = [replace(axis, answer=answer) for axis, (_, _, answer) in zip(machine.items, fresh, strict=True)]
     return replace(machine, items=tuple(items))
 
 

@@ -149,12 +149,12 @@ class Workers(Multiprocess):
 
 def shortage(workers: int, beside_bytes: int, limits: Iterable[Path] = LIMITS) -> str | None:
     """Sentence for workers, each with so much beside it, that may take more than there is; None where it is enough."""
-    needed, given = workers * (WORKER_BYTES + beside_bytes), _limit(limits)
-    if given is None or needed <= given:
+    needed, limit = workers * (WORKER_BYTES + beside_bytes), _limit(limits)
+    if limit is None or needed <= limit:
         return None
     return (
         f"HPN_WORKERS is {workers}, which with fleets may take {needed / 1e9:.1f} GB, and this container has "
-        f"{given / 1e9:.1f} GB: give it more (WEB_MEMORY under compose), or fewer workers"
+        f"{limit / 1e9:.1f} GB: give it more (WEB_MEMORY under compose), or fewer workers"
     )
 
 

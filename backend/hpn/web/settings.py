@@ -169,10 +169,10 @@ def _secrets_folder(named: str | Path | None) -> Path | None:
 def source_of(name: str) -> str:
     """Variable that gives a setting, or else the file."""
     variable = f"HPN_{name.upper()}"
-    given = {key.upper(): value for key, value in os.environ.items()}
-    folder = _secrets_folder(given.get("HPN_SECRETS_FOLDER"))
+    names = {key.upper(): value for key, value in os.environ.items()}
+    folder = _secrets_folder(names.get("HPN_SECRETS_FOLDER"))
     files = [file for file in folder.iterdir() if file.name.upper() == variable] if folder else []
-    return str(files[0]) if files and not given.get(variable) else variable
+    return str(files[0]) if files and not names.get(variable) else variable
 
 
 class Settings(BaseSettings):
@@ -310,10 +310,10 @@ class Settings(BaseSettings):
         """Raise ValueError for a variable or file next to a setting's name, else what it guards would stay open."""
         known = [f"HPN_{name.upper()}" for name in type(self).model_fields]
         folder = _secrets_folder(self.secrets_folder)
-        given = {name: name for name in os.environ}
-        given |= {file.name: str(file) for file in (folder.iterdir() if folder else ())}
-        for name in sorted(given):
+        sources = {name: name for name in os.environ}
+        sources |= {file.name: str(file) for file in (folder.iterdir() if folder else ())}
+        for name in sorted(sources):
             meant = None if name.upper() in {*known, *GONE} else likeness(name, known, 0.85)
             if meant and name.upper().startswith("HPN_"):
-                raise ValueError(f"{given[name]} is not a setting; it looks like {meant}")
+                raise ValueError(f"{sources[name]} is not a setting; it looks like {meant}")
         return self

@@ -45,8 +45,8 @@ async def _kept(request: Request, version: str) -> Catalogue | None:
     catalogue: Catalogue = request.app.state.catalogue
     if version == catalogue.version:
         return catalogue
-    kept: Catalogue | None = await request.app.state.store.catalogue(version)
-    return kept
+    book: Catalogue | None = await request.app.state.store.catalogue(version)
+    return book
 
 
 def documents_of(one: State, other: State) -> tuple[Frozen, Frozen]:

@@ -82,8 +82,8 @@ class Todays:
         taken = await store.take_stale(versions, MOST_DOCUMENTS, self._started)
         selections = [each for each in taken if each.kind == "selection"]
         values = await self._work(_today_of, selections, self._state.catalogue) if selections else []
-        for stale, found in zip(selections, values, strict=True):
-            await store.settle(stale, versions, found)
+        for stale, answer in zip(selections, values, strict=True):
+            await store.settle(stale, versions, answer)
         for stale in taken:
             if stale.kind == "machine":
                 await self._try_machine(stale, versions)
@@ -125,15 +125,15 @@ def _verdict(answer: AxisAnswer, ordering_code: str | None) -> tuple[str, str | 
 def _verdicts(axes: Sequence[SavedAxis], common: str, catalogue: Catalogue) -> list[AxisVerdict]:
     """Axes of a machine, and whether today's verdict is another one."""
     values = orjson.loads(common)
-    found = answers([AxisQuestion(resolved(axis, values), axis.ordering_code) for axis in axes], catalogue)
+    fresh = answers([AxisQuestion(resolved(axis, values), axis.ordering_code) for axis in axes], catalogue)
     return [
         AxisVerdict(axis, _verdict(answer, axis.ordering_code) != _kept(axis.answer, axis.ordering_code))
-        for axis, answer in zip(axes, found, strict=True)
+        for axis, answer in zip(axes, fresh, strict=True)
     ]
 
 
-def _kept(kept: Any, ordering_code: str | None) -> tuple[str, str | None]:
-    return kept["status"], kept["selected" if ordering_code is None else "designation"]
+def _kept(answer: Any, ordering_code: str | None) -> tuple[str, str | None]:
+    return answer["status"], answer["selected" if ordering_code is None else "designation"]
 
 
 def _today_of(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
@@ -148,10 +148,10 @@ def _today_of(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[st
 
 
 def _answered(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
-    asked = [each for each in selections if not each.is_of_today]
-    wholes = [AxisQuestion(resolve(msgspec.json.decode(each.application), {}), each.ordering_code) for each in asked]
-    found = dict(zip((each.id for each in asked), answers(wholes, catalogue), strict=True))
-    return [_columns(each, found.get(each.id)) for each in selections]
+    stale = [each for each in selections if not each.is_of_today]
+    wholes = [AxisQuestion(resolve(msgspec.json.decode(each.application), {}), each.ordering_code) for each in stale]
+    by_id = dict(zip((each.id for each in stale), answers(wholes, catalogue), strict=True))
+    return [_columns(each, by_id.get(each.id)) for each in selections]
 
 
 def _columns(then: Stale, answer: AxisAnswer | None) -> dict[str, Any]:

@@ -145,8 +145,8 @@ class Model(BaseModel):
         try:
             cls.model_validate(_Refused(value))
         except ValidationError as error:
-            found = error.errors(include_url=False, include_input=False)
-            details = [_with_fields(entry, tuple(cls.model_fields)) for entry in found]
+            errors = error.errors(include_url=False, include_input=False)
+            details = [_with_fields(entry, tuple(cls.model_fields)) for entry in errors]
             raise ValidationError.from_exception_data(error.title, details) from None
 
 

@@ -132,15 +132,15 @@ class Reader:
         if value is None:
             return NOTHING
         measure = self.measure(unit)
-        shown = measure.shown(value)
+        number = measure.shown(value)
         other = None if beside is None else measure.shown(beside)
-        if unit == HOURS and shown > MOST_HOURS and (other is None or other <= MOST_HOURS):
+        if unit == HOURS and number > MOST_HOURS and (other is None or other <= MOST_HOURS):
             return f">{GROUP}{self.written(str(MOST_HOURS))}"
-        if _is_extreme(shown):
-            return self._scientific(_told_apart(_exponential, shown, other, self.digits))
-        is_whole = unit == HOURS and abs(shown) >= 100
+        if _is_extreme(number):
+            return self._scientific(_told_apart(_exponential, number, other, self.digits))
+        is_whole = unit == HOURS and abs(number) >= 100
         write, digits = (_decimals, 0) if is_whole else (_short, self.digits)
-        return self.written(_told_apart(write, shown, other, digits))
+        return self.written(_told_apart(write, number, other, digits))
 
     def distinct(self, value: float, other: float | None, unit: str) -> str:
         """A number with as many digits as it takes to tell it from another one."""
@@ -167,10 +167,10 @@ class Reader:
 
     def number(self, quantity: Quantity) -> str:
         """The number of a quantity in the reader's unit, which stands elsewhere, with every whole digit."""
-        shown, digits = self.measure(quantity.unit).shown(quantity.value), quantity.digits
-        if quantity.rounding == "nearest" and not _is_extreme(shown):
-            digits = max(digits, len(f"{abs(shown):.0f}"))
-        return self.written(rounded(shown, digits, quantity.rounding))
+        number, digits = self.measure(quantity.unit).shown(quantity.value), quantity.digits
+        if quantity.rounding == "nearest" and not _is_extreme(number):
+            digits = max(digits, len(f"{abs(number):.0f}"))
+        return self.written(rounded(number, digits, quantity.rounding))
 
     def bound(self, quantity: Quantity) -> str:
         """The number of a quantity as it was given, for a message beside a field that shows the unit."""

@@ -35,5 +35,5 @@ def source_sentence(source: str) -> Sentence:
     kind, _, number = place.partition(" ")
     if kind not in _PLACES:
         return Sentence("{text}", {"text": source}, ("text",))
-    shown = Sentence(_PLACES[kind], {"number": number})
-    return Sentence(N_("{place}, p.\u202f{page}"), {"place": shown, "page": page}) if page else shown
+    name = Sentence(_PLACES[kind], {"number": number})
+    return Sentence(N_("{place}, p.\u202f{page}"), {"place": name, "page": page}) if page else name

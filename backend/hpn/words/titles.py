@@ -40,8 +40,8 @@ def faults_of(text: str, longest: int = LONGEST_TITLE) -> Iterator[Sentence]:
 
 def _hidden_in(text: str) -> Iterator[Sentence]:
     """Characters by which a text looks like another."""
-    if found := HIDDEN.search(text):
-        yield Sentence(N_("must not contain the invisible character {character}"), {"character": _named(found[0])})
+    if match := HIDDEN.search(text):
+        yield Sentence(N_("must not contain the invisible character {character}"), {"character": _named(match[0])})
     count = 0
     for character in unicodedata.normalize("NFC", text):
         count = count + 1 if unicodedata.category(character).startswith("M") else 0

@@ -334,8 +334,8 @@ def _registry() -> Any:
 
 def codes_of(text: str) -> tuple[str, ...]:
     """Unit codes in a text such as `lb_in.lbf`, at most one per quantity, in the order of CODES; others are ignored."""
-    given = text[:200].split(".")
-    first = {_OF_CODE[code]: code for code in reversed(given) if code in CODES}
+    codes = text[:200].split(".")
+    first = {_OF_CODE[code]: code for code in reversed(codes) if code in CODES}
     return tuple(code for code in CODES if code in first.values())
 
 

@@ -15,9 +15,9 @@ def _middle_and_half(case: Case) -> tuple[FloatArray, FloatArray]:
 
 def _nearer_end(case: Case) -> FloatArray:
     """The end of the permitted range of temperature on whose side of the middle the asked one lies."""
-    asked, gears = case.asked["requirements.ambient_temperature_degC"], case.gears
+    ambient, gears = case.asked["requirements.ambient_temperature_degC"], case.gears
     middle, _ = _middle_and_half(case)
-    end = np.where(asked >= middle, gears.ambient_temperature_maximum_degC, gears.ambient_temperature_minimum_degC)
+    end = np.where(ambient >= middle, gears.ambient_temperature_maximum_degC, gears.ambient_temperature_minimum_degC)
     return np.where(np.isnan(middle), np.nan, end)
 
 

@@ -64,10 +64,10 @@ def substituted(reader: Reader, line: EquationLine) -> str:
 def result(reader: Reader, line: EquationLine) -> str:
     """Result of the equation; a count is rounded down."""
     reader = _reader_of(reader, line)
-    given = (Constant(line.result.value, line.result.unit), True)
+    right = (Constant(line.result.value, line.result.unit), True)
     if line.rounded_down:
-        return mathml(reader, "=", (Constant(value_of(line.formula)), True), "→", given)
-    return mathml(reader, "=", given)
+        return mathml(reader, "=", (Constant(value_of(line.formula)), True), "→", right)
+    return mathml(reader, "=", right)
 
 
 def _reader_of(reader: Reader, line: EquationLine) -> Reader:

@@ -52,13 +52,13 @@ def _largest(sheet: CalculationSheet, load: OutputLoad, loads: PhaseValues, f_w:
     notes = [basis, *notes_on_shaft(sheet), *_note_on_centre(sheet, load)]
     lines: list[EquationLine] = []
     if load.model != "digitised":
-        shown = sorted({*phases[: SHOWN_LOADS - 1], worst})
-        for place in shown:
+        rows = sorted({*phases[: SHOWN_LOADS - 1], worst})
+        for place in rows:
             P_i = loads.term(index[place], place)
             lines += [*of_shaft(sheet, P_i.symbol.index, place), *_at_centre(sheet, P_i, place)]
             lines.append(_equivalent_load(sheet, load.model, place, P_i))
-        if len(shown) < len(phases):
-            values = {"shown": len(shown), "all": len(phases)}
+        if len(rows) < len(phases):
+            values = {"shown": len(rows), "all": len(phases)}
             text = N_("{shown} of {all} different loads are shown, the largest among them.")
             notes.append(Sentence(text, values))
     limit = sheet.compared("output_bearing_load", f_w * loads.term(index[worst], worst))

@@ -80,7 +80,7 @@ def _panel(quantity: str, height: float, cycle: DutyCycle, name: str, levels: Se
     rest = [0.0] if cycle.pause_s > 0 else []
     means = [*(getattr(phase, name) for phase in phases), *rest]
     peaks = [*_reached(phases, name), *rest]
-    values, extremes = (np.repeat(np.array(found)[:, None], 2, axis=1) for found in (means, peaks))
+    values, extremes = (np.repeat(np.array(rows)[:, None], 2, axis=1) for rows in (means, peaks))
     return Panel(quantity, suffix_of(name), height, values, levels, extremes if peaks != means else None)
 
 

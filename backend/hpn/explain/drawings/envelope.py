@@ -33,8 +33,8 @@ def envelope_scene(
         if named.kind == "published" and not (picture.life_factor < 1 and picture.loads):
             continue
         if kind:
-            told, strong = reader.told(named.name), named.kind == "own"
-            lines.append(LimitCurve(kind, label, named.corners, strong, told, named.curve.load_coefficient))
+            text, strong = reader.told(named.name), named.kind == "own"
+            lines.append(LimitCurve(kind, label, named.corners, strong, text, named.curve.load_coefficient))
     if not picture.loads:
         return Scene(lines, [])
     marks, worst, ray = _marks(picture, governing, reader, judged=True), picture.worst, None
@@ -115,8 +115,8 @@ def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *,
         kind = "load governing" if set(governing) & set(load.places) else "load"
         if load.has_lever:
             marks.append(Mark("given", "", (load.given_N, load.axial_N), "", LAST))
-        label, told = disc_label(load.places) if at in numbered else "", _told_of(load, outside, reader)
-        marks.append(Mark(kind, label, place, told, load.published, outside, load.marked))
+        label, text = disc_label(load.places) if at in numbered else "", _told_of(load, outside, reader)
+        marks.append(Mark(kind, label, place, text, load.published, outside, load.marked))
     return marks
 
 
@@ -133,13 +133,13 @@ def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:
         "used": share(load.published, load.allowed),
     }
     if load.has_lever:
-        given = {"given": Quantity(load.given_N, "N", 4)}
-        told = reader.told(Sentence(LEVER, values | given))
+        term = {"given": Quantity(load.given_N, "N", 4)}
+        text = reader.told(Sentence(LEVER, values | term))
     else:
-        told = reader.told(
+        text = reader.told(
             Sentence("Phase {phases}: radial {radial}, axial {axial}, {used} of the published maximum", values)
         )
-    return f"{told}, {reader.text(N_('outside the limit'))}" if outside else told
+    return f"{text}, {reader.text(N_('outside the limit'))}" if outside else text
 
 
 LEVER = N_(
@@ -150,12 +150,12 @@ LEVER = N_(
 
 def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
     outside = beyond_limit(picture.constant_load_utilisation, picture.allowed)
-    told = reader.told(
+    text = reader.told(
         Sentence(
             "Equivalent load of the cycle: {used} of the permissible constant load",
             {"used": share(picture.constant_load_utilisation, picture.allowed)},
         )
     )
     if outside:
-        told += ", " + reader.text(N_("outside the limit"))
-    return Mark("equivalent", "P_m", picture.equivalent_N, told, LAST, outside)
+        text += ", " + reader.text(N_("outside the limit"))
+    return Mark("equivalent", "P_m", picture.equivalent_N, text, LAST, outside)

@@ -18,14 +18,14 @@ STEEP = 3.0
 
 def kinds_curve(steps: Sequence[tuple[int, float]], reader: Reader = DEFAULT) -> Element | None:
     """Curve of mass in kg over numbers of kinds, the present one last; None with fewer than two."""
-    shown = sorted(steps)[-MOST_STEPS:]
-    if len(shown) < 2:
+    places = sorted(steps)[-MOST_STEPS:]
+    if len(places) < 2:
         return None
     drawing = canvas("kinds", WIDTH, HEIGHT)
-    least = min(mass for _, mass in shown)
-    inside = [(count, mass) for count, mass in shown if mass <= STEEP * least]
+    least = min(mass for _, mass in places)
+    inside = [(count, mass) for count, mass in places if mass <= STEEP * least]
     low, high = least, max(max(mass for _, mass in inside), 1.01 * least)
-    first, last = shown[0][0], shown[-1][0]
+    first, last = places[0][0], places[-1][0]
 
     def place(count: int, mass: float) -> Point:
         across = LEFT + (WIDTH - LEFT - RIGHT) * (count - first) / (last - first)
@@ -33,13 +33,13 @@ def kinds_curve(steps: Sequence[tuple[int, float]], reader: Reader = DEFAULT) ->
 
     floor = HEIGHT - BOTTOM + 8
     add(drawing, "path", "axis", d=path([(LEFT - 8, floor), (WIDTH - RIGHT + 8, floor)]))
-    points = [place(*step) for step in shown]
-    beyond = len(shown) - len(inside)
+    points = [place(*step) for step in places]
+    beyond = len(places) - len(inside)
     if beyond:
         add(drawing, "path", "line beyond", d=path([(points[beyond - 1][0], TOP - 6), points[beyond]]))
     add(drawing, "path", "line", d=path(points[beyond:]))
     written_at = WIDTH + APART
-    for (count, mass), (x, y) in reversed(list(zip(shown, points, strict=True))):
+    for (count, mass), (x, y) in reversed(list(zip(places, points, strict=True))):
         is_inside, is_now = mass <= STEEP * least, count == last
         text(drawing, "name", (x, HEIGHT - 14), str(count), "middle")
         if is_inside:

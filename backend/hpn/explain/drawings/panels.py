@@ -196,17 +196,17 @@ def _ticks(panel: Panel) -> list[float]:
     """The peaks and 0, as many as have room: the largest first, then 0."""
     low, high = panel.range if panel.extremes == (0.0, 0.0) else panel.extremes
     apart = LETTER / panel.height * HEADROOM * (panel.range[1] - panel.range[0])
-    found = list[float]()
+    ticks = list[float]()
     for value in (max(low, high, key=abs), 0.0, min(low, high, key=abs)):
-        if all(abs(value - other) >= apart for other in found):
-            found.append(value)
-    return found
+        if all(abs(value - other) >= apart for other in ticks):
+            ticks.append(value)
+    return ticks
 
 
 def _figure(value: float, panel: Panel, reader: Reader) -> str:
     """A value as it stands on an axis or at its step."""
-    shown = reader.measure(panel.unit).shown(value)
-    return reader.figure(value, panel.unit) if 1e-3 <= abs(shown) < 1e6 else reader.tick(shown)
+    number = reader.measure(panel.unit).shown(value)
+    return reader.figure(value, panel.unit) if 1e-3 <= abs(number) < 1e6 else reader.tick(number)
 
 
 def _peaks(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: Reader) -> None:
@@ -254,11 +254,11 @@ def _named(level: Level, panel: Panel, reader: Reader) -> str:
 def _levels(drawing: Element, panel: Panel, top: float, left: float, reader: Reader) -> None:
     """Levels as lines with their names at the right, none over another; those beyond the scale in the title's line."""
     levels = sorted(panel.levels, key=lambda level: -level.value)
-    shown = [level for level in levels if not panel.is_beyond(level)]
-    lines = _heights(panel, top, np.array([level.value for level in shown])).tolist()
+    inside = [level for level in levels if not panel.is_beyond(level)]
+    lines = _heights(panel, top, np.array([level.value for level in inside])).tolist()
     beyond = [(level.kind, f"↑ {_named(level, panel, reader)}") for level in levels if panel.is_beyond(level)]
     first = top + (11 if beyond else 0)
-    for level, line, place in zip(shown, lines, _spread(lines, first, top + panel.height + 4), strict=True):
+    for level, line, place in zip(inside, lines, _spread(lines, first, top + panel.height + 4), strict=True):
         add(drawing, "path", f"level {level.kind}", d=path([(left, line), (RIGHT + 4, line)]))
         name = _named(level, panel, reader)
         index = len(level.symbol.partition("_")[2].partition("/")[0])
@@ -283,24 +283,24 @@ def _thinned(x: FloatArray, y: FloatArray) -> list[Point]:
     """Points of a curve: both ends of every piece, and what is between them where it is not straight."""
     share = (x - x[:, :1]) / np.where(x[:, -1:] > x[:, :1], x[:, -1:] - x[:, :1], 1.0)
     bent = (np.abs(y[:, :1] + share * (y[:, -1:] - y[:, :1]) - y) > STRAIGHT).any(axis=1)
-    kept = np.zeros(x.shape, np.bool_)
-    kept[:, (0, -1)] = True
-    kept[bent] = True
-    if kept.sum() > 4 * WIDTH:
-        kept &= _extremes(x, y)
-    points = list(zip(x[kept].tolist(), y[kept].tolist(), strict=True))
+    mask = np.zeros(x.shape, np.bool_)
+    mask[:, (0, -1)] = True
+    mask[bent] = True
+    if mask.sum() > 4 * WIDTH:
+        mask &= _extremes(x, y)
+    points = list(zip(x[mask].tolist(), y[mask].tolist(), strict=True))
     return [point for place, point in enumerate(points) if not place or point != points[place - 1]]
 
 
 def _extremes(x: FloatArray, y: FloatArray) -> np.ndarray:
     """True for the first, last, lowest and highest point in each slice of width 1: a line shows no others."""
     slices, heights = x.ravel().astype(np.intp), y.ravel()
-    kept = np.zeros(len(heights), np.bool_)
+    mask = np.zeros(len(heights), np.bool_)
     starts = np.flatnonzero(np.diff(slices, prepend=-1))
     order = np.lexsort((heights, slices))  # slices ascend, so that each keeps its place
     ends = np.append(starts[1:], len(heights)) - 1
-    kept[starts] = kept[ends] = kept[order[starts]] = kept[order[ends]] = True
-    return kept.reshape(x.shape)
+    mask[starts] = mask[ends] = mask[order[starts]] = mask[order[ends]] = True
+    return mask.reshape(x.shape)
 
 
 # --- Numbers of phases and times --------------------------------------------------------------------------------------
@@ -312,9 +312,9 @@ def _numbers(drawing: Element, axis: TimeAxis, y: float, governing: Sequence[int
 
     def first_free(half: float, *places: float) -> float | None:
         free = (x for x in places if all(end <= x - half or x + half <= start for start, end in taken))
-        if (found := next(free, None)) is not None:
-            taken.append((found - half, found + half))
-        return found
+        if (place := next(free, None)) is not None:
+            taken.append((place - half, place + half))
+        return place
 
     def put(kind: str, label: str, half: float, *places: float) -> None:
         if (x := first_free(half, *places)) is not None:

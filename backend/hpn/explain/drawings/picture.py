@@ -291,14 +291,14 @@ def different_loads(
     """
     loads: dict[tuple[float, float], PhaseLoad] = {}
     series = (radial_N, duty.phases.axial_N[0, 0].tolist(), published, duty.phases.radial_N[0, 0].tolist())
-    for place, (radial, axial, used, given) in enumerate(zip(*series, strict=True)):
-        load = PhaseLoad([], radial, axial, used, allowed, given, names[place])
-        loads.setdefault((given, axial), load).places.append(place)
+    for place, (radial, axial, used, entered) in enumerate(zip(*series, strict=True)):
+        load = PhaseLoad([], radial, axial, used, allowed, entered, names[place])
+        loads.setdefault((entered, axial), load).places.append(place)
     return list(loads.values())
 
 
 def _foremost(loads: list[PhaseLoad]) -> list[PhaseLoad]:
     if len(loads) <= MOST_LOADS:
         return loads
-    kept = sorted(loads, key=lambda load: load.published, reverse=True)[:MOST_LOADS]
-    return sorted(kept, key=lambda load: load.places[0])
+    first = sorted(loads, key=lambda load: load.published, reverse=True)[:MOST_LOADS]
+    return sorted(first, key=lambda load: load.places[0])

@@ -251,13 +251,13 @@ def _scene(
     if not cycle.curves:
         lines += _spans(cycle)
     marks = _phases(cycle, limits[0], u, governing, reader)
-    told = reader.told(_compared("{torque}, {speed}", limits[1], subject))
+    text = reader.told(_compared("{torque}, {speed}", limits[1], subject))
     outside = any(
         beyond_limit(demand / limit.value, u)
         for demand, limit in zip(limits[1].demand, (limits[1].speed, limits[1].torque), strict=True)
         if limit.value
     )
-    marks.append(Mark("equivalent", mean, limits[1].demand, told, LAST, outside))
+    marks.append(Mark("equivalent", mean, limits[1].demand, text, LAST, outside))
     return Scene(lines, marks, None, axes, list(_beyond(limits, u, most, reader)))
 
 
@@ -315,8 +315,8 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
         most = max(places, key=lambda k: used[k])
         kind = "load governing" if set(governing) & set(places) else "load"
         label = disc_label(cycle.rows(places)) if order < MOST_NUMBERS else ""
-        told = reader.told(_told(cycle, most, places)) if label else ""
-        marks.append(Mark(kind, label, place, told, used.item(most), beyond_limit(used.item(most), u), places[:100]))
+        text = reader.told(_told(cycle, most, places)) if label else ""
+        marks.append(Mark(kind, label, place, text, used.item(most), beyond_limit(used.item(most), u), places[:100]))
     if not cycle.curves:
         means = set(zip(cycle.speed_rpm.tolist(), cycle.torque_Nm.tolist(), strict=True)) - set(together)
         marks += [Mark("mean", "", place, "") for place in sorted(means)[:MOST_MARKS]]

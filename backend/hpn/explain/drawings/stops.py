@@ -74,18 +74,18 @@ def emergency_stop_words(subject: Subject) -> list[Sentence]:
         ]
     if stop is None or torque is None or allowed is None:
         return [Sentence("Enter an emergency-stop torque to see how many such stops this gear permits.")]
-    given: dict[str, Value] = {"torque": Quantity(torque, "Nm", 6)}
+    terms: dict[str, Value] = {"torque": Quantity(torque, "Nm", 6)}
     if allowed == inf:
         return [
             Sentence(
                 "{torque} is at or below T_R = {limit}: equation 17.9 sets no limit to the number.",
-                given | {"limit": Quantity(T_R, "Nm", 6)},
+                terms | {"limit": Quantity(T_R, "Nm", 6)},
             )
         ]
-    budget = _budget(stop.count, allowed, given)
+    budget = _budget(stop.count, allowed, terms)
     if torque <= T_M * (1 + equations.ROUNDING):
         return [budget]
-    values = given | {"limit": Quantity(T_M, "Nm", 6)}
+    values = terms | {"limit": Quantity(T_M, "Nm", 6)}
     return [Sentence("{torque} is above T_M = {limit}, whatever the number.", values), budget]
 
 

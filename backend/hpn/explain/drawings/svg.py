@@ -29,8 +29,8 @@ def canvas(kind: str, width: float, height: float) -> Element:
 
 def add(parent: Element, name: str, kind: str, **attributes: float | str) -> Element:
     """Add an element of a kind that the style sheet knows; `_` in the name of an attribute is a hyphen."""
-    given = {key.replace("_", "-"): written(value) for key, value in attributes.items()}
-    return SubElement(parent, name, {"class": kind, **given})
+    texts = {key.replace("_", "-"): written(value) for key, value in attributes.items()}
+    return SubElement(parent, name, {"class": kind, **texts})
 
 
 def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "start") -> Element:

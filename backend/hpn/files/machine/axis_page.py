@@ -31,14 +31,14 @@ def axis_page(
     axis: FrozenAxis, export: Export | None, place: tuple[int, int], reader: Reader, *, full: bool
 ) -> dict[str, Any]:
     """Data of the page of an axis; `place` is where it stands, and of how many. An open one has its faults alone."""
-    told = [
+    notes = [
         Sentence(PLACE, {"place": place[0], "count": place[1]}),
         Sentence(QUANTITY, {"quantity": reader.exact(axis.quantity)}),
     ]
     page = {
         "number": axis.number,
         "name": axis.name or "",
-        "place": " · ".join(map(reader.told, told)),
+        "place": " · ".join(map(reader.told, notes)),
         "note": axis.note or "",
         "faults": faults_of(axis, reader),
         "selection": None,

@@ -51,18 +51,18 @@ def pdf(export: DifferencesExport, reader: Reader) -> bytes:
 
 def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
     """Everything that the template sets."""
-    data, found, text = frame(export.heading, reader), export.differences, reader.text
+    data, differences, text = frame(export.heading, reader), export.differences, reader.text
     title = shortened(export.heading.title.strip() or text(UNTITLED), LONGEST_TITLE)
     arrow = " → ".join(export.labels)
-    count, more = len(found.axes) + found.same, len(found.axes) - MOST_AXES
+    count, more = len(differences.axes) + differences.same, len(differences.axes) - MOST_AXES
     values = {
-        "changed": reader.exact(len(found.axes)),
+        "changed": reader.exact(len(differences.axes)),
         "count": reader.exact(count),
-        "lost": reader.exact(sum(axis.lost_its_gear for axis in found.axes)),
-        "other": reader.exact(sum(axis.has_another_gear for axis in found.axes)),
+        "lost": reader.exact(sum(axis.lost_its_gear for axis in differences.axes)),
+        "other": reader.exact(sum(axis.has_another_gear for axis in differences.axes)),
     }
-    notes = [reader.told(Sentence(COUNTS, values)) if found.axes else text(NO_CHANGE)]
-    notes += [text(REORDERED)] if found.order else []
+    notes = [reader.told(Sentence(COUNTS, values)) if differences.axes else text(NO_CHANGE)]
+    notes += [text(REORDERED)] if differences.order else []
     return data | {
         "labels": data["labels"] | {key: text(label) for key, label in LABELS.items()},
         "title": title,
@@ -77,9 +77,9 @@ def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
         "facts": [],
         "common": [
             [reader.told(label_of(each.pointer)), *(shown(line, reader) for line in lines)]
-            for each, lines in zip(found.common, common_lines(export), strict=True)
+            for each, lines in zip(differences.common, common_lines(export), strict=True)
         ],
-        "rows": [_row(axis, export.sides(axis.number), reader) for axis in found.axes[:MOST_AXES]],
+        "rows": [_row(axis, export.sides(axis.number), reader) for axis in differences.axes[:MOST_AXES]],
         "more": reader.told(Sentence(MORE_AXES, {"count": reader.exact(more)})) if more > 0 else "",
     }
 

@@ -31,18 +31,18 @@ def workbook(export: DifferencesExport, reader: Reader) -> bytes:
 
 
 def _write_axes(leaf: Leaf, export: DifferencesExport) -> None:
-    reader, found, (one, other) = leaf.reader, export.differences, export.labels
+    reader, differences, (one, other) = leaf.reader, export.differences, export.labels
     counts: dict[str, Cell] = {
         N_("From"): one,
         N_("To"): other,
-        N_("Axes that differ"): reader.exact(len(found.axes)),
-        N_("Axes that are the same"): reader.exact(found.same),
+        N_("Axes that differ"): reader.exact(len(differences.axes)),
+        N_("Axes that are the same"): reader.exact(differences.same),
     }
     write_title(leaf, N_("Untitled machine"), counts)
     text, gear, share = reader.text, reader.text(N_("Gear")), reader.text(N_("Utilisation"))
     heads = [text(N_("Number")), text(N_("Axis")), f"{gear} {one}", f"{gear} {other}", f"{share} {one}"]
     leaf.heads(N_("Axes that differ"), *heads, f"{share} {other}", text(N_("Effect")), numbers=(0, 4, 5))
-    for axis in found.axes:
+    for axis in differences.axes:
         sides = (axis.side_from, axis.side_to)
         leaf.put(0, axis.number, "figure")
         leaf.put(1, axis.name)

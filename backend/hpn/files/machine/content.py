@@ -79,7 +79,7 @@ def content(export: MachineExport, pages: Pages, reader: Reader) -> dict[str, An
         "common": _common(export, reader),
         "decided": _decided(export, pages, reader),
         "gears": _gears(export, reader),
-        "notices": [[told] for told in _notes(export, pages, reader)],
+        "notices": [[note] for note in _notes(export, pages, reader)],
         "axes": _table(export, reader) if len(axes) <= MOST_ROWS else None,
         "axes_listing": None if len(axes) <= MOST_ROWS else _listing(export, reader),
         "pages": list(_pages(export, pages, reader)),
@@ -107,14 +107,14 @@ def _notes(export: MachineExport, pages: Pages, reader: Reader) -> Iterator[str]
 def _summary(export: MachineExport, reader: Reader) -> dict[str, Any]:
     summary = export.summary
     lacking = summary.unsuitable + summary.unrated
-    told = [Sentence(WITHOUT, {"count": lacking})] if lacking else []
-    told += [Sentence(OPEN, {"count": summary.open})] if summary.open else []
+    sentences = [Sentence(WITHOUT, {"count": lacking})] if lacking else []
+    sentences += [Sentence(OPEN, {"count": summary.open})] if summary.open else []
     inside = failing_inside(export.document.axes)
-    told += [Sentence(NOT_OVER, {"count": len(inside), "axes": ranges(inside)})] if inside else []
+    sentences += [Sentence(NOT_OVER, {"count": len(inside), "axes": ranges(inside)})] if inside else []
     most = next((axis for axis in export.document.axes if axis.number == summary.utilisation_axis), None)
     return {
         "status": "unsuitable" if lacking else "unrated" if summary.open or inside else "suitable",
-        "word": " · ".join(map(reader.told, told or [Sentence(ALL_SOUND)])),
+        "word": " · ".join(map(reader.told, sentences or [Sentence(ALL_SOUND)])),
         "count": reader.exact(summary.suitable),
         "of": reader.told(Sentence(SUITABLE, {"count": reader.exact(summary.axes)})),
         "largest": None
@@ -132,8 +132,8 @@ def _facts(export: MachineExport, reader: Reader) -> Iterator[tuple[str, str]]:
     yield reader.told(weight), reader.with_unit(reader.figure(summary.weight_kg, "kg"), "kg")
     if summary.shortest_life_h is not None:
         life = reader.told(life_of(summary.shortest_life_h, summary.shortest_life_of).sentence)
-        told = Sentence(N_("{life}, axis {number}"), {"life": life, "number": str(summary.shortest_life_axis)})
-        yield text(N_("Shortest life")), reader.told(told)
+        sentence = Sentence(N_("{life}, axis {number}"), {"life": life, "number": str(summary.shortest_life_axis)})
+        yield text(N_("Shortest life")), reader.told(sentence)
     if export.before and export.since:
         changed = Sentence(N_("Changed since {label}"), {"label": export.before[0]})
         yield reader.told(changed), reader.exact(len(export.since.axes))

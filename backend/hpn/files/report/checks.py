@@ -30,10 +30,10 @@ def checks(export: Export, reader: Reader) -> list[Row]:
     for step in steps:
         last = ORDER.get(step.code, last)
         rows.append((last, _of_step(step, export, reader)))
-    shown = {step.code for step in steps}
+    codes = {step.code for step in steps}
     limits = {limit.code: limit for step in steps for limit in step.comparisons}
     for check in export.account.checks:
-        if check.code not in shown:
+        if check.code not in codes:
             rows.append((ORDER.get(check.code, len(ORDER)), _of_check(check, limits.get(check.code), reader)))
     return [row for _, row in sorted(rows, key=lambda row: row[0])]
 
@@ -45,11 +45,11 @@ def limits(account: Account, reader: Reader) -> list[Row]:
 
 def bases(export: Export, reader: Reader) -> list[tuple[str, Any]]:
     """Title and basis of each check, but for what stands beside its equation or limit."""
-    told = AS_LIMITED | (TOLD & {step.code for step in _steps(export)})
+    codes = AS_LIMITED | (TOLD & {step.code for step in _steps(export)})
     return [
         (reader.text(check.definition.title), sentence(reader.text(check.definition.basis)))
         for check in export.account.checks
-        if check.code not in told
+        if check.code not in codes
     ]
 
 
@@ -101,7 +101,7 @@ def _row(code: str) -> Row:
 
 def _of_check(check: CheckLine, limit: Comparison | None, reader: Reader) -> Row:
     """Row of a check: its limit as an equation, figures that the equation lacks, and its bar."""
-    read, result = check.reading, check.result
+    reading, result = check.reading, check.result
     row = _row(check.code) | {
         "number": check.definition.equation or "",
         "title": sentence(reader.text(check.definition.title)),
@@ -114,10 +114,10 @@ def _of_check(check: CheckLine, limit: Comparison | None, reader: Reader) -> Row
     }
     if limit:
         row["limit_formula"] = compared(reader, limit)
-        if read.demand == limit.value:
+        if reading.demand == limit.value:
             return row
-    told = {"demand": demand(read, reader), "sign": read.sign, "limit": bounds(read, reader)}
-    return row | {"relation": formula(read.relation), **told}
+    texts = {"demand": demand(reading, reader), "sign": reading.sign, "limit": bounds(reading, reader)}
+    return row | {"relation": formula(reading.relation), **texts}
 
 
 def bar(utilisation: float | None, bound: float, status: str, reader: Reader) -> Row:
@@ -129,19 +129,23 @@ def bar(utilisation: float | None, bound: float, status: str, reader: Reader) ->
 # --- Demand and limit in words ----------------------------------------------------------------------------------------
 
 
-def bounds(read: CheckReading, reader: Reader) -> str:
+def bounds(reading: CheckReading, reader: Reader) -> str:
     """Limit of a check, and the share of it that the user's own u leaves."""
-    if read.has_unlimited_limit:
+    if reading.has_unlimited_limit:
         return reader.text(N_("unlimited"))
-    part = f" {'÷' if read.kind == 'minimum' else '×'} {exact_percent(read.part, reader)}" if read.part < 1 else ""
-    return measured(read.limit, read.unit, reader, read.demand) + part
+    part = (
+        f" {'÷' if reading.kind == 'minimum' else '×'} {exact_percent(reading.part, reader)}"
+        if reading.part < 1
+        else ""
+    )
+    return measured(reading.limit, reading.unit, reader, reading.demand) + part
 
 
-def demand(read: CheckReading, reader: Reader) -> str:
+def demand(reading: CheckReading, reader: Reader) -> str:
     """Value that a check tests."""
-    if read.has_unlimited_demand:
+    if reading.has_unlimited_demand:
         return reader.text(N_("unlimited"))
-    return measured(read.demand, read.unit, reader, read.bound)
+    return measured(reading.demand, reading.unit, reader, reading.bound)
 
 
 def failures(account: Account, reader: Reader) -> str:

@@ -28,11 +28,11 @@ def tolerances(export: Export, reader: Reader) -> dict[str, Any] | None:
     said = tolerance_of(export.candidate)
     if over is None or said is None:
         return None
-    told = [reader.told(said), *([reader.told(over.growth)] if over.growth else [])]
+    sentences = [reader.told(said), *([reader.told(over.growth)] if over.growth else [])]
     remedies = [over.remedy(line, reader) for line in over.holding]
     return {
         "title": reader.text(N_("Over the whole tolerance")),
-        "told": sentence(" ".join(told)),
+        "told": sentence(" ".join(sentences)),
         "remedies": [sentence(text) for text in remedies],
         "standing": reader.told(over.standing),
         "heads": [[reader.text(line) if line else "" for line in head] for head in HEADS],
@@ -44,16 +44,16 @@ def tolerances(export: Export, reader: Reader) -> dict[str, Any] | None:
 
 
 def _check(line: WorstLine, reader: Reader) -> dict[str, Any]:
-    given, reading = line.check.reading, line.reading
+    nominal, reading = line.check.reading, line.reading
     sides = [(reader.text(N_("high")), line.high), (reader.text(N_("low")), line.low)]
-    shown = bar(line.worst, line.bound, line.status, reader)
+    drawing = bar(line.worst, line.bound, line.status, reader)
     return {
-        **shown,
-        "utilisation": f"{'' if line.is_exact or line.worst is None else '≈ '}{shown['utilisation']}",
+        **drawing,
+        "utilisation": f"{'' if line.is_exact or line.worst is None else '≈ '}{drawing['utilisation']}",
         "title": sentence(reader.text(line.check.definition.title)),
         "worst": demand(reading, reader) if reading else NOTHING,
-        "given": demand(given, reader),
-        "limit": f"{given.sign} {bounds(reading or given, reader)}",
+        "given": demand(nominal, reader),
+        "limit": f"{nominal.sign} {bounds(reading or nominal, reader)}",
         "nominal": reader.percent(line.check.result.utilisation, line.bound),
         "case": [[word, [formula(name) for name in names]] for word, names in sides if names],
     }
@@ -63,11 +63,11 @@ def _inputs(over: OverTolerance, reader: Reader) -> list[list[Any]]:
     """Tolerances as they were given, those that decide first."""
     deciding = {line.given.path: line for line in over.deciding}
     worst = over.governing.worst if over.governing else None
-    given = sorted(
+    lines = sorted(
         over.given, key=lambda line: [*deciding].index(line.path) if line.path in deciding else len(deciding)
     )
     rows = []
-    for line in given:
+    for line in lines:
         one = deciding.get(line.path)
         exact = f"{_percent(worst, reader)} → {_percent(one.worst, reader)}" if one else NOTHING
         rows.append([formula(line.symbol), reader.told(line.place), line.text(reader), exact, _up_to(one, reader)])

@@ -58,10 +58,10 @@ def printed(
         try:
             return _compiled(template, _without(unshown, data), {"title": title, **texts}, seconds)
         except typst.TypstError as error:
-            found = _unshown(error)
-            if found <= unshown:
+            missing = _unshown(error)
+            if missing <= unshown:
                 raise
-            unshown |= found
+            unshown |= missing
         finally:
             _forget()
 
@@ -101,7 +101,7 @@ def _unshown(error: typst.TypstError) -> set[str]:
 def _without(unshown: Set[str], data: Mapping[str, Any]) -> Mapping[str, Any]:
     if not unshown:
         return data
-    shown = json.dumps(data, ensure_ascii=False).translate({ord(character): REPLACEMENT for character in unshown})
-    replaced: dict[str, Any] = json.loads(shown)
+    text = json.dumps(data, ensure_ascii=False).translate({ord(character): REPLACEMENT for character in unshown})
+    replaced: dict[str, Any] = json.loads(text)
     codes = ", ".join(f"U+{ord(character):04X}" for character in sorted(unshown))
     return {**replaced, "notices": [*replaced["notices"], [data["labels"]["unprintable"].format(codes=codes)]]}

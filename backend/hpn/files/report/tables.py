@@ -13,9 +13,9 @@ MOST_PHASES = 20
 """Phases up to which each is listed; beyond, their range and sum."""
 
 
-def lines(shown: Iterable[Line], reader: Reader) -> list[dict[str, Any]]:
+def lines(items: Iterable[Line], reader: Reader) -> list[dict[str, Any]]:
     """Lines that have a value: label, symbol, text, and where it comes from."""
-    return [_row(line, reader) for line in known(shown)]
+    return [_row(line, reader) for line in known(items)]
 
 
 def _row(line: Line, reader: Reader) -> dict[str, Any]:

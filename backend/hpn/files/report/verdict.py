@@ -54,8 +54,8 @@ def verdict(export: Export, reader: Reader) -> dict[str, Any]:
     limit = export.account.torque_limit
     lines = limit.lines if limit.warns or candidate.status == "suitable" else ()
     of_worst = tolerance_of(candidate)
-    told = (*_said(export, reader), *((of_worst,) if of_worst else ()), *lines)
-    said = [reader.told(sentence) for sentence in told]
+    sentences = (*_said(export, reader), *((of_worst,) if of_worst else ()), *lines)
+    said = [reader.told(sentence) for sentence in sentences]
     return {
         "gear": candidate.designation,
         "word": reader.text(VERDICTS[candidate.status]),
@@ -79,8 +79,8 @@ def _facts(export: Export, reader: Reader) -> Iterable[tuple[str, str]]:
     yield reader.text(N_("Ordering code")), export.heading.ordering_code.strip()
     if load and (check := account.check("output_bearing_life")) and check.result.status != "not_rated":
         values = {"basis": load.life_basis, "life": Quantity(load.life_h, "h", 6)}
-        asked = Sentence(N_("Bearing life {basis}, asked {life}"), values)
-        yield reader.told(asked), account.text(f"candidate.bearing_life_{load.life_basis}_h", reader)
+        requirement = Sentence(N_("Bearing life {basis}, asked {life}"), values)
+        yield reader.told(requirement), account.text(f"candidate.bearing_life_{load.life_basis}_h", reader)
     yield reader.text(N_("Gear life L_10")), account.text("candidate.life_L10_h", reader)
     yield reader.text(GEAR["weight_kg"].name), account.text("gear.weight_kg", reader)
     yield reader.text(N_("Length")), account.text("gear.length", reader)
@@ -208,6 +208,6 @@ def _missed(export: Export, candidate: Candidate, reader: Reader) -> str:
     if account.gear and account.gear.weight_kg:
         name = f"{name} ({account.text('gear.weight_kg', reader)})"
     failed = failures(account, reader)
-    told = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
+    sentence = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
     remedy = _remedy(export, candidate)
-    return f"{told} {reader.told(remedy)}" if remedy else told
+    return f"{sentence} {reader.told(remedy)}" if remedy else sentence

@@ -20,9 +20,9 @@ def write_candidates(sheet: SelectionSheet) -> None:
     accounts = [export.account.of(candidate) for candidate in export.selection.candidates]
     lines = [line for account in accounts for line in (*account.figures, *account.published)]
     columns = {line.code: line for line in lines if line.value is not None or line.kind == "published"}
-    shown = [code for code in dict.fromkeys(line.code for line in lines) if code in columns]
+    codes = [code for code in dict.fromkeys(line.code for line in lines) if code in columns]
     heads = [*map(text, IDENTITY), *(text(definition.title) for definition in definitions.values())]
-    heads += [sheet.head(columns[code].named.symbol or columns[code].label(sheet.reader), code) for code in shown]
+    heads += [sheet.head(columns[code].named.symbol or columns[code].label(sheet.reader), code) for code in codes]
     for column, head in enumerate(heads):
         sheet.put(column, head, "head")
     sheet.sheet.set_row(0, HEAD_POINTS)
@@ -31,7 +31,7 @@ def write_candidates(sheet: SelectionSheet) -> None:
     sheet.sheet.repeat_columns(0)
     for account in accounts:
         sheet.row += 1
-        _write_candidate(sheet, account, list(definitions), shown)
+        _write_candidate(sheet, account, list(definitions), codes)
     sheet.sheet.autofilter(0, 0, sheet.row, len(heads) - 1)
     checks = len(IDENTITY) + len(definitions)
     widths = (13, 14, 11, 7, *[CHECK_WIDTH] * len(definitions), *[WIDTH] * (len(heads) - checks))

@@ -113,11 +113,11 @@ def _write_formulas(sheet: SelectionSheet, cells: dict[str, str]) -> None:
         line = account.line(f"duty.{name}") or account.line(f"candidate.{name}")
         line = line or Line("", CANDIDATE[name])  # its version did not know the figure
         named, value = line.named, line.shown(sheet.reader)
-        shown: Cell = "" if value is None else value
+        cell: Cell = "" if value is None else value
         sheet.put(0, sheet.reader.text(named.name))
         sheet.put(1, named.symbol, "quiet")
         live = "=" + formula.format_map(cells).replace("[unlimited]", unlimited)
-        sheet.sheet.write_formula(sheet.row, 2, live, sheet.styles["figure"], shown)
+        sheet.sheet.write_formula(sheet.row, 2, live, sheet.styles["figure"], cell)
         sheet.put(3, sheet.reader.unit(suffix_of(name)), "unit")
         sheet.put(4, f"({named.equation})" if named.equation else "", "quiet")
         cells[name] = _cell(sheet.row, 2)
@@ -170,6 +170,6 @@ def _write_inputs(sheet: SelectionSheet) -> None:
     for place, phase in enumerate(application.duty_cycle.load_phases):
         sheet.put(0, row_label(place, phase.name), "quiet")
         for column, name in enumerate(BLOCKS, 1):
-            given = getattr(phase, name)
-            sheet.put(column, "" if given is None else given, "input")
+            number = getattr(phase, name)
+            sheet.put(column, "" if number is None else number, "input")
         sheet.row += 1

@@ -172,13 +172,13 @@ def _write_tolerances(sheet: SelectionSheet) -> None:
         sheet.row += 1
     deciding = {line.given.path: line for line in over.deciding}
     sheet.heads(N_("Tolerances"), *map(text, INPUT_HEADS), numbers=(2,))
-    for given in over.given:
-        one = deciding.get(given.path)
-        sheet.put(0, reader.told(given.place))
-        sheet.put(1, given.text(reader), "quiet")
+    for each in over.given:
+        one = deciding.get(each.path)
+        sheet.put(0, reader.told(each.place))
+        sheet.put(1, each.text(reader), "quiet")
         if one:
             sheet.put(2, one.worst, "share")
-            sheet.put(3, given.text(reader, one.allowed) if one.allowed else "", "quiet")
+            sheet.put(3, each.text(reader, one.allowed) if one.allowed else "", "quiet")
         sheet.row += 1
     for sentence in (*([over.growth] if over.growth else []), *over.failing):
         sheet.note(reader.told(sentence), WIDTHS)

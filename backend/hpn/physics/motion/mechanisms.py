@@ -126,10 +126,10 @@ class Rotary(Mechanism):
 
     @model_validator(mode="after")
     def _gravity_is_whole(self) -> Self:
-        given = [name for name in ("gravity_mass_kg", "gravity_radius_mm") if getattr(self, name) is not None]
-        if len(given) == 1:
-            other = "gravity_radius_mm" if given == ["gravity_mass_kg"] else "gravity_mass_kg"
-            raise refused(self, ((given[0],), refusal("gravity_needs", field=other)))
+        names = [name for name in ("gravity_mass_kg", "gravity_radius_mm") if getattr(self, name) is not None]
+        if len(names) == 1:
+            other = "gravity_radius_mm" if names == ["gravity_mass_kg"] else "gravity_mass_kg"
+            raise refused(self, ((names[0],), refusal("gravity_needs", field=other)))
         least = (self.gravity_mass_kg or 0.0) * ((self.gravity_radius_mm or 0.0) / 1000) ** 2
         if self.inertia_kgm2 < least * (1 - ROUNDING):
             bound = Quantity(least, "kgm2", 6, "up")

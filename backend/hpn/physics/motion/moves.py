@@ -174,10 +174,10 @@ class Move(Model):
         shape, jerk = self._shape, self._jerk
         if jerk is not None and self.jerk_share is not None:
             raise refused(self, ((self.JERK,), refusal("ramp_twice", field="jerk_share")))
-        found = self._timing_of(shape)
-        if jerk is not None and (found.least_jerk > jerk * (1 + ROUNDING) if found else self._timing_of(Shape())):
+        timing = self._timing_of(shape)
+        if jerk is not None and (timing.least_jerk > jerk * (1 + ROUNDING) if timing else self._timing_of(Shape())):
             self._refuse(self.JERK, "jerk_too_low", bound=_said(self._least_jerk(jerk), self.JERK))
-        return found or self._refuse_ramps(shape)
+        return timing or self._refuse_ramps(shape)
 
     def _least_jerk(self, low: float) -> float:
         """Smallest jerk with which the move is possible, where `low` is not enough and some jerk is.
@@ -199,16 +199,16 @@ class Move(Model):
 
     def _timing_of(self, shape: Shape) -> Timing | None:
         """Ramps and run with some shape of ramps; None where these leave too little time."""
-        T, speed, given = self.time_s, getattr(self, self.SPEED), self._given
+        T, speed, names = self.time_s, getattr(self, self.SPEED), self._given
         D, V = abs(self.way), None if speed is None else speed * self.SPEED_UNIT
         if self.profile == "triangular":
-            if len(given) != 1:
-                self._refuse_count("move_takes_one", given)
+            if len(names) != 1:
+                self._refuse_count("move_takes_one", names)
             return triangle(D, T or (2 * D / V if V else 2 * math.sqrt(D / getattr(self, self.ACCELERATION))))
         ramps = [self._ramp(place) for place in (0, 1)]
         known = [ramp for ramp in ramps if ramp]
         if (T is None and (V is None or not known)) or (T is not None and V is not None and len(known) == 2):
-            self._refuse_count("move_takes_two", given)
+            self._refuse_count("move_takes_two", names)
         if T is not None and V is not None:
             self._check_speed(D, T, V, known)
             return at_speed_in_time(D, T, V, ramps, shape)
@@ -273,8 +273,8 @@ class Move(Model):
     def _refuse(self, field: str, code: str, **values: Quantity | str) -> NoReturn:
         raise refused(self, ((field,), refusal(code, **values)))
 
-    def _refuse_count(self, code: str, given: Sequence[str]) -> NoReturn:
-        said = ", ".join(given) or "none"
+    def _refuse_count(self, code: str, names: Sequence[str]) -> NoReturn:
+        said = ", ".join(names) or "none"
         fields = ", ".join(("time_s", self.SPEED, self.ACCELERATION))
         raise refused(self, ((), refusal(code, profile=self.profile, fields=fields, given=said)))
 

@@ -110,11 +110,11 @@ async def add_axes(request: Request, id: schemas.Id) -> Response:
         require_document(request, machine)
         common = common_of(machine)
         new = [axis for axis in sent.axes if axis.number is None]
-        asked = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in new]
-        asked += [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone]
-        found = answers(asked, catalogue)
-        drafts = [draft_of(axis, answer) for axis, answer in zip(new, found[: len(new)], strict=True)]
-        restored = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, found[len(new) :], strict=True)]
+        questions = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in new]
+        questions += [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone]
+        answered = answers(questions, catalogue)
+        drafts = [draft_of(axis, answer) for axis, answer in zip(new, answered[: len(new)], strict=True)]
+        restored = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, answered[len(new) :], strict=True)]
         return Change(machine.version, author_of(request, machine), new=drafts, restored=restored)
 
     numbers = await apply(request, id, make, [], once_of(request, body))

@@ -132,13 +132,13 @@ def items_of(body: bytes, most: int) -> list[Raw]:
 def _cut(body: bytes, shape: Any) -> tuple[bytes, list[Raw]]:
     """A body and its items; numbers that JSON has not, such as NaN, are there as ones that no field takes."""
     try:
-        given = msgspec.json.decode(body, type=shape)
+        document = msgspec.json.decode(body, type=shape)
     except msgspec.DecodeError:
         if not (b"NaN" in body or b"Infinity" in body):
             raise
         body = NO_NUMBERS.sub(lambda token: token[0] if token[0].startswith(b'"') else b"1e999", body)
-        given = msgspec.json.decode(body, type=shape)
-    items = given.applications
+        document = msgspec.json.decode(body, type=shape)
+    items = document.applications
     return body, [] if items is UNSET else [item for item in msgspec.structs.astuple(items) if item is not UNSET]
 
 
@@ -164,10 +164,10 @@ def _require_alone(beside: bytes) -> None:
     RepeatedNameError for two of them."""
     if len(beside) > MOST_BESIDE:
         raise Problem(422, f"{SHAPE} alone")
-    given = msgspec.json.decode(beside, type=dict[str, Raw])
-    if "applications" not in given:
+    others = msgspec.json.decode(beside, type=dict[str, Raw])
+    if "applications" not in others:
         raise Problem(422, SHAPE, [(("applications",), "must be a list")])
-    if unknown := [name for name in given if name != "applications"]:
+    if unknown := [name for name in others if name != "applications"]:
         known = [("applications",) if place < MAXIMUM_ERRORS else () for place in range(len(unknown))]
         errors = [((name,), unknown_field(name, each).text) for name, each in zip(unknown, known, strict=True)]
         raise Problem(422, f"{SHAPE} alone", errors)
@@ -190,9 +190,9 @@ def _item(text: bytes, most: int, line: int = 0) -> _Item:
             raise Problem(413, f"an application may have {most} bytes at most")
         require_bounded(text)
         value = from_json(text)
-        given = value.get("reference") if isinstance(value, dict) else None
-        reference = given if isinstance(given, str) else None
-        asked = BatchItem.model_validate(value)
+        name = value.get("reference") if isinstance(value, dict) else None
+        reference = name if isinstance(name, str) else None
+        question = BatchItem.model_validate(value)
         require_unique(text, value)
     except ValidationError as error:
         return _Item(reference, Problem.of(error), line)
@@ -200,7 +200,7 @@ def _item(text: bytes, most: int, line: int = 0) -> _Item:
         return _Item(None, Problem(400, f"is not JSON: {str(error).replace(' at line 1 ', ' at ')}"), line)
     except Problem as problem:
         return _Item(reference, problem, line)
-    return _Item(reference, asked, line)
+    return _Item(reference, question, line)
 
 
 # --- Answers ----------------------------------------------------------------------------------------------------------
@@ -208,15 +208,15 @@ def _item(text: bytes, most: int, line: int = 0) -> _Item:
 
 def _evaluated(items: Iterator[_Item | None], state: State) -> bytes | None:
     """Result lines of the next items, as many as can be read in time; None at the end."""
-    end, read = time.monotonic() + SLICE_SECONDS, list[_Item]()
+    end, slice = time.monotonic() + SLICE_SECONDS, list[_Item]()
     for item in items:
-        read += [item] if item else []
-        if len(read) == SLICE_ITEMS or time.monotonic() > end:
+        slice += [item] if item else []
+        if len(slice) == SLICE_ITEMS or time.monotonic() > end:
             break
     else:
-        if not read:
+        if not slice:
             return None
-    results = _lines_of(read, state.catalogue)
+    results = _lines_of(slice, state.catalogue)
     state.metrics.selections(result.verdict for result in results)
     return b"".join([encode(result) + b"\n" for result in results])
 
@@ -237,10 +237,10 @@ def _line(item: _Item, outcome: tuple[Outcome, str] | InputError | Problem) -> B
         brief, link = outcome
         return BatchLine(item.reference, "ok", *brief, link=link)
     problem = Problem.of(outcome) if isinstance(outcome, InputError) else outcome
-    told = msgspec.convert(problem.body(), ProblemReply)
+    reply = msgspec.convert(problem.body(), ProblemReply)
     if item.line and item.reference is None:
-        told = replace(told, detail=f"line {item.line}: {told.detail}")
-    return BatchLine(item.reference, "error", problem=told)
+        reply = replace(reply, detail=f"line {item.line}: {reply.detail}")
+    return BatchLine(item.reference, "error", problem=reply)
 
 
 # --- Lines ------------------------------------------------------------------------------------------------------------

@@ -45,8 +45,8 @@ async def catalogue(request: Request) -> Response:
 async def gear(request: Request, designation: schemas.Designation) -> Response:
     """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
     book: Catalogue = request.app.state.catalogue
-    found = gear_named(designation, book)
-    return conditional(request, encode(one_gear(found, book)))
+    match = gear_named(designation, book)
+    return conditional(request, encode(one_gear(match, book)))
 
 
 @router.get(
@@ -80,7 +80,7 @@ def one_gear(gear: Gear, catalogue: Catalogue) -> OneGearReply:
 
 def gear_named(designation: str, catalogue: Catalogue) -> Gear:
     """Gear of a designation in any of the printed spellings; Problem 404 where the catalogue has none."""
-    found = catalogue.find(designation)
-    if found is None:
+    match = catalogue.find(designation)
+    if match is None:
         raise Problem(404, f"the catalogue has no gear {designation[:60]!r}; a designation is written like HPN-20A-5")
-    return found
+    return match

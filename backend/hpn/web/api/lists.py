@@ -76,7 +76,7 @@ async def part_of(
     request: Request,
     query: ListQuery,
     kind: DocumentKind | None,
-    read: Callable[[LineFilter, str | None, int], Awaitable[tuple[list[Any], str | None]]],
+    page_of: Callable[[LineFilter, str | None, int], Awaitable[tuple[list[Any], str | None]]],
 ) -> ListPart:
     """The part of a list that is asked for; Problem 422 for a cursor that isn't one."""
     store: Store = request.app.state.store
@@ -84,7 +84,7 @@ async def part_of(
     if pending := await store.pending(versions, kind):  # before the lines: of none that is not pending it is unknown
         request.app.state.todays.wake()
     try:
-        lines, following = await read(_wanted(query, kind, versions), query.cursor, query.limit)
+        lines, following = await page_of(_wanted(query, kind, versions), query.cursor, query.limit)
     except ValueError as error:
         raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
     since = _moment(query.deleted_since, "deleted_since")

@@ -55,11 +55,11 @@ def install(app: FastAPI, *bodies: type[BaseModel]) -> None:
 
     `bodies` are the models of request bodies that routes read themselves.
     """
-    found = app.openapi
+    generate = app.openapi
 
     @cache
     def openapi() -> dict[str, Any]:
-        document = found()
+        document = generate()
         models: list[Any] = [(model, "validation") for model in bodies]
         _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
         components = document["components"]

@@ -250,12 +250,12 @@ async def represented(request: Request, id: str, label: str | None = None) -> tu
 
 def _represented(reopened: Reopened, catalogue: Catalogue) -> tuple[bytes, str]:
     saved, then = reopened.saved, reopened.then
-    shown = saved.designation or reopened.selection.foremost.designation
+    gear = saved.designation or reopened.selection.foremost.designation
     body = encode_reply(
         {
             **structs.asdict(_summary(saved)),
             "application": Raw(saved.application),
-            "gear": then and then.by_designation.get(shown),
+            "gear": then and then.by_designation.get(gear),
             "result": Raw(saved.result),
             "label": saved.label,
             "revisions": [replies.revision(each) for each in saved.revisions],

@@ -241,8 +241,8 @@ def _plain(value: object) -> str:
 def _peak_bytes() -> int:
     """Most memory that this process has had, 0 where the system doesn't say it."""
     status = Path("/proc/self/status")
-    found = re.search(r"VmHWM:\s+(\d+) kB", status.read_text(encoding="ascii")) if status.exists() else None
-    return int(found[1]) * 1024 if found else 0
+    match = re.search(r"VmHWM:\s+(\d+) kB", status.read_text(encoding="ascii")) if status.exists() else None
+    return int(match[1]) * 1024 if match else 0
 
 
 def _restrain(bounds: Bounds) -> None:

@@ -89,9 +89,9 @@ async def pass_body(
 
 def require_plain(request: Request) -> None:
     """Raise Problem 415 for a body that its Content-Encoding says is compressed: nothing here unpacks one."""
-    given = ",".join(request.headers.getlist("content-encoding")).lower()
-    if any(coding.strip() not in ("", "identity") for coding in given.split(",")):
-        text = f"send the body uncompressed (the Content-Encoding header says {given[:40]})"
+    encoding = ",".join(request.headers.getlist("content-encoding")).lower()
+    if any(coding.strip() not in ("", "identity") for coding in encoding.split(",")):
+        text = f"send the body uncompressed (the Content-Encoding header says {encoding[:40]})"
         raise Problem(415, text, headers={"Accept-Encoding": "identity"})
 
 
@@ -106,20 +106,20 @@ def _too_large(request: Request, maximum_bytes: int) -> Problem:
 
 def wrong_type(request: Request, wanted: str) -> Problem:
     """415."""
-    given = content_type_of(request) or "nothing"
-    return Problem(415, f"send the body as {wanted} (the Content-Type header says {given})")
+    type = content_type_of(request) or "nothing"
+    return Problem(415, f"send the body as {wanted} (the Content-Type header says {type})")
 
 
 def parsed(model: type[M], text: AnyStr, bound: Callable[[AnyStr], None] | None = None) -> M:
     """Value of a model in JSON; raises ValidationError, or Problem as `require_bounded` and `require_unique` do."""
     (bound or require_bounded)(text)
     try:
-        given = from_json(text)  # the library reads a long list several times as fast from values as from JSON
+        content = from_json(text)  # the library reads a long list several times as fast from values as from JSON
     except ValueError as error:
         fault = InitErrorDetails(type="json_invalid", input=text, ctx={"error": str(error)})
         raise ValidationError.from_exception_data(model.__name__, [fault]) from None
-    value = model.model_validate(given)
-    require_unique(text, given)
+    value = model.model_validate(content)
+    require_unique(text, content)
     return value
 
 

@@ -35,8 +35,8 @@ def has_already(request: Request, etag: str) -> bool:
 
 def require_match(request: Request, etag: str) -> None:
     """Raise Problem 412 where `If-Match` names another state than this one."""
-    given = request.headers.get("if-match")
-    if given is not None and not _lists(given, etag, weakly=False):
+    tags = request.headers.get("if-match")
+    if tags is not None and not _lists(tags, etag, weakly=False):
         raise other_state()
 
 
@@ -52,10 +52,10 @@ def _lists(header: str, etag: str, *, weakly: bool) -> bool:
 
 def idempotency_key(request: Request) -> str | None:
     """Key by which a repeated request of the same caller is known, or None; Problem 400 for one that can't be a key."""
-    given = request.headers.get("idempotency-key")
-    if given is None:
+    key = request.headers.get("idempotency-key")
+    if key is None:
         return None
-    match = IDEMPOTENCY_KEY.fullmatch(given.strip())
+    match = IDEMPOTENCY_KEY.fullmatch(key.strip())
     if match is None:
         raise Problem(400, "Idempotency-Key must be 1 to 200 visible ASCII characters, such as a UUID")
     name, caller = request.state.api_key, request.state.caller

@@ -78,9 +78,9 @@ def _for_this_machine(scope: Scope) -> bool:
 
 
 def _refusal(connection: HTTPConnection) -> Problem:
-    asked = connection.headers.get("host", "")[:LONGEST_NAMED]
+    host = connection.headers.get("host", "")[:LONGEST_NAMED]
     return Problem(
-        421, f"the service does not answer for the host {asked!r}; HPN_ALLOWED_HOSTS names those it answers for"
+        421, f"the service does not answer for the host {host!r}; HPN_ALLOWED_HOSTS names those it answers for"
     )
 
 

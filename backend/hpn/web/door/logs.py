@@ -82,5 +82,5 @@ def _json(logger: Any, method: str, event: EventDict) -> bytes:
 
 def request_id(headers: Headers) -> str:
     """Id that the caller has given, where it is well-formed, else a random one."""
-    given = headers.get("x-request-id", "")
-    return given if REQUEST_ID.fullmatch(given) else secrets.token_hex(16)
+    id = headers.get("x-request-id", "")
+    return id if REQUEST_ID.fullmatch(id) else secrets.token_hex(16)

@@ -103,14 +103,14 @@ async def change(request: Request) -> Response:
     """Keep a language, units or both, and go back to where the reader was."""
     require_same_origin(request)
     body = await read_body(request, FORM, maximum_bytes=MAXIMUM_BYTES)
-    given = dict(pairs_of(body))
-    response = RedirectResponse(_own(given.get("back", "")), 303, {"Cache-Control": "no-store"})
-    if (language := given.get("language", "")) in LANGUAGES:
+    fields = dict(pairs_of(body))
+    response = RedirectResponse(_own(fields.get("back", "")), 303, {"Cache-Control": "no-store"})
+    if (language := fields.get("language", "")) in LANGUAGES:
         _keep(request, response, LANGUAGE, language)
-    if given.get("preset") in units.PRESETS:
-        _keep(request, response, UNITS, ".".join(units.PRESETS[given["preset"]]))
-    elif any(name in given for name in units.CHOICES):
-        codes = units.codes_of(".".join(given.get(name, "") for name in units.CHOICES))
+    if fields.get("preset") in units.PRESETS:
+        _keep(request, response, UNITS, ".".join(units.PRESETS[fields["preset"]]))
+    elif any(name in fields for name in units.CHOICES):
+        codes = units.codes_of(".".join(fields.get(name, "") for name in units.CHOICES))
         _keep(request, response, UNITS, ".".join(codes))
     return response
 

@@ -15,12 +15,12 @@ def with_beside(pairs: Pairs) -> Pairs:
     typed = [(name.removeprefix(PREFIX), text) for name, text in pairs if name.startswith(PREFIX)]
     if not typed:
         return pairs
-    kept, focus = [(name, text) for name, text in pairs if not name.startswith(PREFIX)], ""
+    others, focus = [(name, text) for name, text in pairs if not name.startswith(PREFIX)], ""
     for place, text in typed:
         name, _, size = place.partition("-")
         if name in BY_NAME and text.strip():
             is_part = bool(size) and name in BY_SIZE
-            kept = [(other, said) for other, said in kept if other != name or (is_part and said.strip())]
-            kept.append((name, f"{size[:20]}: {text}" if is_part else text))
+            others = [(other, said) for other, said in others if other != name or (is_part and said.strip())]
+            others.append((name, f"{size[:20]}: {text}" if is_part else text))
             focus = f"f-{name}"
-    return [*kept, ("do", f"give:{focus}")] if focus else kept
+    return [*others, ("do", f"give:{focus}")] if focus else others

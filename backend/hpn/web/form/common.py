@@ -45,11 +45,11 @@ def _text(value: Any) -> str:
 
 def read(pairs: Sequence[tuple[str, str]], names: Sequence[str], reader: Reader) -> tuple[Form, Values]:
     """Form as it was sent, with its problems, and the values in it by path; a blank field is none."""
-    given = Given([pair for pair in pairs if pair[0] in (*names, WRITTEN, WAS)])
+    entries = Given([pair for pair in pairs if pair[0] in (*names, WRITTEN, WAS)])
     values = dict[str, Any]()
     problems: list[FieldProblem] = []
-    several = [(name, text) for name, texts in given.lists.items() for text in texts]
-    for name, text in (*given.scalars.items(), *several):
+    several = [(name, text) for name, texts in entries.lists.items() for text in texts]
+    for name, text in (*entries.scalars.items(), *several):
         path, symbol = BY_SYMBOL[name]
         value = read_value(text, symbol.kind, mostly_whole=symbol.unit == "h")
         if isinstance(value, Sentence):
@@ -59,10 +59,10 @@ def read(pairs: Sequence[tuple[str, str]], names: Sequence[str], reader: Reader)
         else:
             values[path] = value
     problems += _refused(values)
-    decimal = given.notation.reader.decimal
-    told = tuple(FieldProblem(each.name, None, each.message.marked(decimal)) for each in problems)
-    lists = {name: tuple(texts) for name, texts in given.lists.items()}
-    form = Form(rows=(), texts=given.scalars, lists=lists, problems=told, written=given.notation.marker)
+    decimal = entries.notation.reader.decimal
+    marked = tuple(FieldProblem(each.name, None, each.message.marked(decimal)) for each in problems)
+    lists = {name: tuple(texts) for name, texts in entries.lists.items()}
+    form = Form(rows=(), texts=entries.scalars, lists=lists, problems=marked, written=entries.notation.marker)
     return for_reader(form, reader), values
 
 
@@ -71,29 +71,29 @@ def _refused(values: Values) -> list[FieldProblem]:
     try:
         Common.model_validate(nested(values))
     except ValidationError as error:
-        found = []
+        problems = []
         for each in error.errors(include_url=False, include_input=False):
             path = tuple(str(step) for step in each["loc"] if isinstance(step, str))
             symbol = BY_PATH.get(path) or BY_PATH.get(path[:2])
-            found.append(FieldProblem(symbol.name if symbol else FIRST[0], None, refusal_of(each)))
-        return found
+            problems.append(FieldProblem(symbol.name if symbol else FIRST[0], None, refusal_of(each)))
+        return problems
     return []
 
 
 def nested(values: Values) -> Json:
     """Values as JSON of common values, or as a merge patch of them."""
-    found: Json = {}
+    document: Json = {}
     for path, value in values.items():
         part, _, name = path.partition(".")
-        (found.setdefault(part, {}) if name else found)[name or part] = value
-    return found
+        (document.setdefault(part, {}) if name else document)[name or part] = value
+    return document
 
 
 def changed(before: Values, after: Values) -> dict[str, Any]:
     """Values that differ, by path, None for one that is taken away; a choice that is left at its default is none."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for path, symbol in BY_SYMBOL.values():
         is_default = path not in after and before.get(path) == next(iter(symbol.choices), None)
         if before.get(path) != after.get(path) and not is_default:
-            found[path] = after.get(path)
-    return found
+            values[path] = after.get(path)
+    return values

@@ -59,13 +59,13 @@ class Condition:
 
 def condition_of(pairs: Sequence[tuple[str, str]], reader: Reader, default: EnvelopeQuery) -> Condition:
     """Condition in the query of an address; what is blank is as in the default."""
-    given = dict(pairs)
-    notation = numbers.Notation({numbers.WRITTEN: given.get(WRITTEN_AT, "")})
-    entries = [(name, notation.entry(given.get(name, ""), _UNITS[name])) for name in FIELDS]
-    shown = numbers.to_fields([(text, _UNITS[name]) for name, text in entries], reader, notation.marker)
-    read = {name: numbers.read_value(text, "number") for name, text in entries if text.strip()}
-    problems = {name: value for name, value in read.items() if isinstance(value, Sentence)}
-    query = None if problems else _query({FIELDS[name]: value for name, value in read.items()}, default, problems)
+    texts = dict(pairs)
+    notation = numbers.Notation({numbers.WRITTEN: texts.get(WRITTEN_AT, "")})
+    entries = [(name, notation.entry(texts.get(name, ""), _UNITS[name])) for name in FIELDS]
+    cells = numbers.to_fields([(text, _UNITS[name]) for name, text in entries], reader, notation.marker)
+    values = {name: numbers.read_value(text, "number") for name, text in entries if text.strip()}
+    problems = {name: value for name, value in values.items() if isinstance(value, Sentence)}
+    query = None if problems else _query({FIELDS[name]: value for name, value in values.items()}, default, problems)
     fields = tuple(
         ConditionField(
             name,
@@ -75,7 +75,7 @@ def condition_of(pairs: Sequence[tuple[str, str]], reader: Reader, default: Enve
             getattr(default, FIELDS[name]),
             problems[name].marked(notation.reader.decimal) if name in problems else None,
         )
-        for (name, _), text in zip(entries, shown.texts, strict=True)
+        for (name, _), text in zip(entries, cells.texts, strict=True)
     )
     return Condition(fields, query or default, reader.marker)
 

@@ -85,8 +85,8 @@ class Form:
     @property
     def mechanism(self) -> str:
         """Kind of mechanism that moves."""
-        given = self.texts.get("mech", "").strip()
-        return given if given in TYPES else TYPES[0]
+        code = self.texts.get("mech", "").strip()
+        return code if code in TYPES else TYPES[0]
 
     @property
     def mechanism_symbols(self) -> tuple[Symbol, ...]:
@@ -165,9 +165,9 @@ def address_of_empty(form: Form) -> str:
     """Address of a form without a phase, with all else that it says."""
     lists = [(name, text) for name, texts in form.lists.items() for text in texts]
     lists += [(TOLERANCE, text) for text in form.tolerances]
-    given = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip() and name != "mech"]
+    entries = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip() and name != "mech"]
     start = START[form.mechanism if form.has_motion else "phases"]
-    return "&".join(filter(None, (f"/?{start}", urlencode(given)))) + query_of(form.labels)
+    return "&".join(filter(None, (f"/?{start}", urlencode(entries)))) + query_of(form.labels)
 
 
 def for_reader(form: Form, reader: Reader) -> Form:
@@ -180,17 +180,17 @@ def for_reader(form: Form, reader: Reader) -> Form:
     cells += [(part.number, units[name]) for name, text in sized.items() for part in text.parts]
     parted = [pair for table in (*form.rows, *form.moves, single) for pair in table.items() if pair[0] in INPUT_OF]
     cells += [cell for name, text in parted for cell in entries_of(name, text, units)]
-    shown = numbers.to_fields(cells, reader, form.written)
-    texts = iter(shown.texts)
+    entries = numbers.to_fields(cells, reader, form.written)
+    texts = iter(entries.texts)
     rows, moves, bodies, (named,) = (
         tuple({name: next(texts) if name in units else text for name, text in table.items()} for table in part)
         for part in (form.rows, form.moves, form.bodies.rows, (single,))
     )
     by_size = {name: tuple((part.place, next(texts)) for part in text.parts) for name, text in sized.items()}
     named |= {name: text.shown([number for _, number in by_size[name]], reader) for name, text in sized.items()}
-    told = iter([field_of(name, text, texts, units, reader) for name, text in parted])
+    fields = iter([field_of(name, text, texts, units, reader) for name, text in parted])
     rows, moves, (named,) = (
-        tuple({name: next(told) if name in INPUT_OF else text for name, text in table.items()} for table in part)
+        tuple({name: next(fields) if name in INPUT_OF else text for name, text in table.items()} for table in part)
         for part in (rows, moves, (named,))
     )
     return replace(
@@ -201,5 +201,5 @@ def for_reader(form: Form, reader: Reader) -> Form:
         texts=named,
         sized=by_size,
         written=reader.marker,
-        was=shown.was,
+        was=entries.was,
     )

@@ -255,8 +255,8 @@ class Given:
     @property
     def has_tolerances(self) -> bool:
         """True where inputs have a field for their tolerance."""
-        given = (*self.single, *self.phases.counts, *self.moves.counts)
-        return any(name in INPUT_OF for name in given)
+        entries = (*self.single, *self.phases.counts, *self.moves.counts)
+        return any(name in INPUT_OF for name in entries)
 
     @property
     def is_exact(self) -> bool:

@@ -70,11 +70,11 @@ def _model(
 
 def hand_over(given: Given, *, gravity: bool) -> None:
     """Take what the bodies come to as the mechanism's inertia, and as its gravity too."""
-    found = body_table(given.bodies.rows).sum
-    if found is None:
+    total = body_table(given.bodies.rows).sum
+    if total is None:
         return
-    figures = {"J": found.inertia_kgm2}
-    if gravity and given.scalars.get("mech", "").strip() == "rotary" and found.gravity_radius_mm is not None:
-        figures |= {"mg": found.gravity_mass_kg, "rg": found.gravity_radius_mm}
+    figures = {"J": total.inertia_kgm2}
+    if gravity and given.scalars.get("mech", "").strip() == "rotary" and total.gravity_radius_mm is not None:
+        figures |= {"mg": total.gravity_mass_kg, "rg": total.gravity_radius_mm}
     for name, value in figures.items():
         given.put(name, f"{value:.{DIGITS}g}")

@@ -165,16 +165,16 @@ def _tolerances(given: Given, document: dict[str, Any], places: dict[str, FieldP
     if given.is_exact:
         return []
     mechanism = given.scalars.get("mech", "").strip() if given.has_motion else None
-    found = [
+    faults = [
         (FieldProblem(one.name, one.index, Sentence("")), tolerances.read(one.symbol, one.row, one.sides, mechanism))
         for one in fields(given.duty, given.scalars)
     ]
-    found += [
+    faults += [
         (FieldProblem(TOLERANCE, k, Sentence("")), tolerances.read_text(text, mechanism))
         for k, text in enumerate(given.tolerances)
     ]
     problems, values = [], {}
-    for place, said in found:
+    for place, said in faults:
         if isinstance(said, Sentence):
             problems.append(replace(place, message=said))
         elif said[0] in values:
@@ -189,18 +189,18 @@ def _tolerances(given: Given, document: dict[str, Any], places: dict[str, FieldP
 
 def _numbers_by_size(name: str, text: BySize, problems: list[FieldProblem]) -> dict[str, float] | float | None:
     """Numbers by size as the application has them, or the one number for all; what can't be read is reported."""
-    found: dict[str, float] = {}
+    numbers: dict[str, float] = {}
     for part in text.parts:
         value = read_value(part.number, "number")
         if isinstance(value, Sentence):
             whole = len(text.parts) == 1 and not part.size
             problems.append(FieldProblem(name, None, value if whole else _on_size(part.place, value)))
-        elif part.place in found and part.size:
+        elif part.place in numbers and part.size:
             template = N_("{size} is given twice: give each size once")
             problems.append(FieldProblem(name, None, Sentence(template, {"size": _size(part.place)})))
         else:
-            found[part.place] = float(value)
-    return found[OTHERS] if found.keys() == {OTHERS} else found
+            numbers[part.place] = float(value)
+    return numbers[OTHERS] if numbers.keys() == {OTHERS} else numbers
 
 
 def _on_size(size: str, said: Sentence) -> Sentence:
@@ -274,7 +274,7 @@ def _validated(
     known: Sequence[FieldProblem],
     of_tolerances: Mapping[str, FieldProblem],
 ) -> tuple[Application | None, list[FieldProblem]]:
-    kept = [k for k, row in enumerate(rows) if filled(row)] or [0]
+    numbers = [k for k, row in enumerate(rows) if filled(row)] or [0]
     places = {(problem.name, problem.index) for problem in known}
     try:
         return Application.model_validate(document), []
@@ -282,7 +282,7 @@ def _validated(
         errors = refusal.errors(include_url=False, include_input=False)
     problems = []
     for error in errors:
-        name, index = place_of(error["loc"], kept)
+        name, index = place_of(error["loc"], numbers)
         if error["loc"][:1] == ("tolerances",) and (own := of_tolerances.get(str(error["loc"][1:2][0]))):
             name, index = own.name, own.index
         if error["type"] == "no_motion":

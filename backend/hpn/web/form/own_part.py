@@ -102,14 +102,14 @@ def carried_over(now: Pairs, then: Pairs, own: Pairs, inherited: Collection[str]
     for name in names:
         if name == "wo" or (name in inherited and name not in mine and before.get(name) == after.get(name)):
             continue
-        kept = mine.get(name, ()) if before.get(name) == after.get(name) else after.get(name, ())
-        pairs += [(name, text) for text in kept]
+        texts = mine.get(name, ()) if before.get(name) == after.get(name) else after.get(name, ())
+        pairs += [(name, text) for text in texts]
     gone = [name for name in before if name in inherited and name not in after and name not in CYCLE_NAMES]
     return pairs + [("wo", name) for name in gone if name not in mine.get("wo", ())]
 
 
 def _grouped(pairs: Pairs) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    texts: dict[str, list[str]] = {}
     for name, text in pairs:
-        found.setdefault(name, []).append(text)
-    return found
+        texts.setdefault(name, []).append(text)
+    return texts

@@ -78,10 +78,10 @@ def typed(name: str, text: str, notation: Notation, units: Mapping[str, str]) ->
         return Sides([_side(plain, unit, notation)] if plain else [])
     second = _SECOND_SIGN.search(plain[1:])
     parts = [plain] if second is None else [plain[: second.start() + 1], plain[second.start(1) + 1 :]]
-    found = {part[0]: _side(part[1:], unit, notation) for part in parts}
-    if len(found) < len(parts):
+    sides = {part[0]: _side(part[1:], unit, notation) for part in parts}
+    if len(sides) < len(parts):
         return Sides([Side(f"{plain}?", is_percent=False)])
-    return Sides([found.get(sign, Side("0", is_percent=True)) for sign in "-+"])
+    return Sides([sides.get(sign, Side("0", is_percent=True)) for sign in "-+"])
 
 
 def _side(text: str, unit: str, notation: Notation) -> Side:

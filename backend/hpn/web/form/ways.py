@@ -37,27 +37,27 @@ EXAMPLES = {
 
 def way_of(pairs: Pairs) -> str:
     """Way in which pairs give their duty cycle."""
-    given = next((text.strip() for name, text in pairs if name == "mech"), "")
-    return given if given in TYPES else PHASES
+    code = next((text.strip() for name, text in pairs if name == "mech"), "")
+    return code if code in TYPES else PHASES
 
 
 def switch(given: Given, wanted: str) -> None:
     """Choose another way: its inputs as they were left, those of before aside."""
     own = given.cycle()
-    kept = {way_of(query): query for query in map(_read, given.asides)}
+    queries = {way_of(query): query for query in map(_read, given.asides)}
     here = way_of(own)
     if here != PHASES:
         stray = [pair for pair in own if pair[0] in _OF_PHASES_ALONE]  # given beside a motion
         own = [pair for pair in own if pair[0] not in _OF_PHASES_ALONE]
         if _says_anything(stray):
-            kept[PHASES] = stray
+            queries[PHASES] = stray
     if wanted == MOTION:
-        wanted = here if here != PHASES else next((way for way in reversed(kept) if way != PHASES), TYPES[0])
+        wanted = here if here != PHASES else next((way for way in reversed(queries) if way != PHASES), TYPES[0])
     if wanted != here and wanted in START:
-        before, own = own, list(kept.pop(wanted, []) or _begun(own, here, wanted))
-        kept[here] = before
+        before, own = own, list(queries.pop(wanted, []) or _begun(own, here, wanted))
+        queries[here] = before
     given.put_cycle(own)
-    given.asides = [_written(query) for query in kept.values() if _says_anything(query)]
+    given.asides = [_written(query) for query in queries.values() if _says_anything(query)]
 
 
 def _says_anything(query: Pairs) -> bool:

@@ -33,8 +33,8 @@ def file_of(answers: pa.Table, created: datetime, suffix: str, reader: Reader) -
     table = answers.drop_columns(NEAREST.names)
     if suffix == "parquet":
         return as_parquet(_told(table, Reader("en")))
-    told = _told(table, reader)
-    return _csv(told) if suffix == "csv" else _workbook(told, created)
+    texts = _told(table, reader)
+    return _csv(texts) if suffix == "csv" else _workbook(texts, created)
 
 
 def _told(table: pa.Table, reader: Reader) -> pa.Table:

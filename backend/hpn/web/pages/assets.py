@@ -56,8 +56,8 @@ def assets_of(state: State) -> Assets:
     """Assets of an application, read once."""
     if not hasattr(state, "assets"):
         state.assets = Assets.load()
-    found: Assets = state.assets
-    return found
+    assets: Assets = state.assets
+    return assets
 
 
 async def serve(request: Request) -> Response:

@@ -115,8 +115,8 @@ class Answer(Result):
 
     def tries(self, designation: str) -> tuple[str, ...]:
         """Links that follow the alternatives of a gear's remedy, one each."""
-        found = self.alternatives(designation)
-        return tuple(self.links(tried(self.application, one, self.catalogue)) for one in found)
+        alternatives = self.alternatives(designation)
+        return tuple(self.links(tried(self.application, one, self.catalogue)) for one in alternatives)
 
     @property
     def carried(self) -> str:
@@ -172,10 +172,10 @@ def respond(request: Request, form: Form, *, first: bool = False, axis: AxisView
     template = "_changes.html" if changes else "axis.html" if axis else "page.html"
     status = 422 if form.problems and not (axis and not axis.changed) else 200
     once = "" if axis else once_key()  # what is saved of an axis names the state that it changes
-    shown: dict[str, Any] = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once}
-    shown |= {"first": first, "axis": axis, "bench": axis.place if axis else "/"}
+    values: dict[str, Any] = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once}
+    values |= {"first": first, "axis": axis, "bench": axis.place if axis else "/"}
     printed = absolute(request, answer.address) if answer else ""
-    return _render(request, template, status, printed=printed, **shown)
+    return _render(request, template, status, printed=printed, **values)
 
 
 def read_query(query: bytes) -> Form:
@@ -251,12 +251,12 @@ def _parted(link: str) -> tuple[list[str], list[str]]:
 def _map(
     selection: Selection, everything: Mapping[str, Candidate], catalogue: Catalogue
 ) -> tuple[tuple[int, tuple[MapCell | None, ...]], ...]:
-    asked = {candidate.designation for candidate in selection.candidates}
+    names = {candidate.designation for candidate in selection.candidates}
     gears = {(gear.ratio, gear.size): gear for gear in catalogue.gears}
 
     def cell(ratio: int, size: str) -> MapCell | None:
         gear = gears.get((ratio, size))
-        return MapCell(gear, everything[gear.designation], gear.designation in asked) if gear else None
+        return MapCell(gear, everything[gear.designation], gear.designation in names) if gear else None
 
     return tuple((ratio, tuple(cell(ratio, size) for size in catalogue.sizes)) for ratio in catalogue.ratios)
 

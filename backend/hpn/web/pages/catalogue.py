@@ -75,16 +75,16 @@ def show_catalogue(request: Request) -> Response:
     gears = [gear for gear in catalogue.gears if size in ("", gear.size) and ratio in ("", str(gear.ratio))]
     sort = request.query_params.get("sort", "")
     sort = sort if sort.removeprefix("-") in (GEAR, *COLUMNS) else ""
-    kept = {names[0]: size, names[1]: ratio, "sort": sort}
+    query = {names[0]: size, names[1]: ratio, "sort": sort}
     return page(
         request,
         "catalogue.html",
         200 if gears else 404,
         groups=_groups(gears, sort),
         count=len(gears),
-        heads=[_head(field, sort, kept) for field in (GEAR, *COLUMNS)],
-        sizes=[_filter(one, size == one, kept, names[0]) for one in catalogue.sizes],
-        ratios=[_filter(one, ratio == one, kept, names[1]) for one in map(str, catalogue.ratios)],
+        heads=[_head(field, sort, query) for field in (GEAR, *COLUMNS)],
+        sizes=[_filter(one, size == one, query, names[0]) for one in catalogue.sizes],
+        ratios=[_filter(one, ratio == one, query, names[1]) for one in map(str, catalogue.ratios)],
         filtered=bool(size or ratio),
         canonical=absolute(request, "/catalogue"),
     )
@@ -101,14 +101,14 @@ def _groups(gears: Sequence[Gear], sort: str) -> list[list[Gear]]:
     return [group[::-1] for group in reversed(by_size)] if falls else by_size
 
 
-def _head(field: str, sort: str, kept: Mapping[str, str]) -> SortHead:
+def _head(field: str, sort: str, query: Mapping[str, str]) -> SortHead:
     now = sort or GEAR
     order = {field: "ascending", f"-{field}": "descending"}.get(now, "")
-    return SortHead(field, onward("/catalogue", **{**kept, "sort": f"-{field}" if now == field else field}), order)
+    return SortHead(field, onward("/catalogue", **{**query, "sort": f"-{field}" if now == field else field}), order)
 
 
-def _filter(text: str, active: bool, kept: Mapping[str, str], name: str) -> Filter:
-    return Filter(text, onward("/catalogue", **{**kept, name: "" if active else text}), active)
+def _filter(text: str, active: bool, query: Mapping[str, str], name: str) -> Filter:
+    return Filter(text, onward("/catalogue", **{**query, name: "" if active else text}), active)
 
 
 def show_gear(request: Request) -> Response:

@@ -54,17 +54,17 @@ async def compare_selections(request: Request) -> Response:
     ids = [query.get("a", ""), query.get("b", "")]
     if marked or not all(ids):
         return await _rendered(request, 422, {"missing": [], "sides": [], "marked": len(marked)})
-    found: list[tuple[SavedSelection, Catalogue | None]] = []
+    sides: list[tuple[SavedSelection, Catalogue | None]] = []
     missing = []
     for place, id in zip("AB", ids, strict=True):
         try:
-            found.append(await with_catalogue(request.app.state, id))
+            sides.append(await with_catalogue(request.app.state, id))
         except Problem:
             missing.append(place)
     if missing:
-        left = [saved for saved, _ in found]
+        left = [saved for saved, _ in sides]
         return await _rendered(request, 404, {"missing": missing, "sides": [], "left": left, "marked": 2})
-    return await _rendered(request, 200, {"missing": [], "found": found})
+    return await _rendered(request, 200, {"missing": [], "found": sides})
 
 
 def _side(saved: SavedSelection, catalogue: Catalogue | None) -> SavedSide:
@@ -104,10 +104,10 @@ def _first(rows: Iterable[NumberedRow]) -> list[NumberedRow]:
     return list(islice(rows, MOST_ROWS + 1))
 
 
-async def _rendered(request: Request, status: int, shown: dict[str, Any]) -> Response:
+async def _rendered(request: Request, status: int, values: dict[str, Any]) -> Response:
     def work() -> Response:
-        compared = _compared(*(_side(*one) for one in shown["found"])) if "found" in shown else {}
-        return page(request, "compared.html", status, **shown | compared)
+        compared = _compared(*(_side(*one) for one in values["found"])) if "found" in values else {}
+        return page(request, "compared.html", status, **values | compared)
 
     return await compute(request, "pages", work)
 

@@ -33,8 +33,10 @@ def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "",
     rows, summary = rows_of(listing.answers), listing.summary
     top = foremost(rows) if len(rows) == summary.axes else None
     places = {row.axis: row.place for row in rows}
-    asked = [(places[axis], axis, application) for axis, application in applications_of(listing.axes)]
-    view = FleetView(summary, by_need(rows), links_of(asked, base), allowed_of(asked), top, weights_of(catalogue))
+    applications = [(places[axis], axis, application) for axis, application in applications_of(listing.axes)]
+    view = FleetView(
+        summary, by_need(rows), links_of(applications, base), allowed_of(applications), top, weights_of(catalogue)
+    )
     return copy_context().run(
         _told, Reader(language), view=view, name=name, base=base, catalogue_version=catalogue.version
     )
@@ -55,14 +57,14 @@ Placed = tuple[int, str, Application]
 
 def links_of(axes: Iterable[Placed], base: str = "") -> dict[int, str]:
     """Link of each axis with its name as title, where that can be one; one that is too long for an address has none."""
-    found = ((place, to_link(application) + _titled(name)) for place, name, application in axes)
-    return {place: base + link for place, link in found if len(link) <= MAXIMUM_QUERY_BYTES}
+    links = ((place, to_link(application) + _titled(name)) for place, name, application in axes)
+    return {place: base + link for place, link in links if len(link) <= MAXIMUM_QUERY_BYTES}
 
 
 def allowed_of(axes: Iterable[Placed]) -> dict[int, float]:
     """Utilisation that an axis may reach, for those that ask for less than 1."""
-    found = ((place, application.requirements.utilisation) for place, _, application in axes)
-    return {place: allowed for place, allowed in found if allowed < 1}
+    bounds = ((place, application.requirements.utilisation) for place, _, application in axes)
+    return {place: allowed for place, allowed in bounds if allowed < 1}
 
 
 def _titled(axis: str) -> str:

@@ -50,10 +50,10 @@ class Insight:
     @cached_property
     def columns(self) -> tuple[Account, ...]:
         """The gears side by side: the chosen one, and the others that are pinned or else the one that comes next."""
-        shown = [self.chosen, *(self.everything[pin] for pin in self.pins if pin != self.chosen.designation)]
-        if len(shown) == 1 and (second := self._second()):
-            shown.append(second)
-        return tuple(Account(self.selection, entry, self.application, self.catalogue) for entry in shown)
+        candidates = [self.chosen, *(self.everything[pin] for pin in self.pins if pin != self.chosen.designation)]
+        if len(candidates) == 1 and (second := self._second()):
+            candidates.append(second)
+        return tuple(Account(self.selection, entry, self.application, self.catalogue) for entry in candidates)
 
     @property
     def groups(self) -> list[RowGroup]:

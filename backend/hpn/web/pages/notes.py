@@ -133,15 +133,15 @@ _OTHER: tuple[Group, str, tuple[Action, ...]] = ("known", "", ())
 
 def note_groups(notices: Iterable[Notice], catalogue: Catalogue | None) -> list[NoteGroup]:
     """Notes by group; an input is typed beside the first note that asks for it."""
-    found: dict[Group, list[Note]] = {group: [] for group in GROUPS}
+    groups: dict[Group, list[Note]] = {group: [] for group in GROUPS}
     typed = set[str]()
     for notice in notices:
         group, touches, actions = _NOTES.get(notice.code, _OTHER)
         offered = [_addressed(one, notice, catalogue) for one in actions if one.kind != "type" or one.what not in typed]
         typed.update(one.what for one in offered if one.kind == "type")
         done = tuple(one for one in offered if one.what)
-        found[group].append(Note(notice, touches, done))
-    return [NoteGroup(group, GROUPS[group], tuple(notes)) for group, notes in found.items() if notes]
+        groups[group].append(Note(notice, touches, done))
+    return [NoteGroup(group, GROUPS[group], tuple(notes)) for group, notes in groups.items() if notes]
 
 
 def _addressed(action: Action, notice: Notice, catalogue: Catalogue | None) -> Action:

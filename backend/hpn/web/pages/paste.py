@@ -148,12 +148,12 @@ def _opened(link: str, text: str) -> PasteDraft:
     except Problem as problem:
         return PasteDraft(link, text, problems=(_plain(problem.detail),))
     except ValidationError as error:
-        found = error.errors(include_url=False, include_input=False)
+        errors = error.errors(include_url=False, include_input=False)
         problems = [
             Sentence(
                 N_("{field}: {message}"), {"field": pointer(entry["loc"]) or "JSON", "message": sentence_of(entry)}
             )
-            for entry in found[:20]
+            for entry in errors[:20]
         ]
         return PasteDraft(link, text, problems=tuple(problems))
 

@@ -170,8 +170,8 @@ class Result:
     def other_judgement(self) -> str:
         """Address with gears judged by the worst case, or by the values as given where they are judged so."""
         assert self.application is not None
-        asked = self.application.requirements
-        changed = asked.model_copy(update={"over_tolerance": not asked.over_tolerance})
+        requirements = self.application.requirements
+        changed = requirements.model_copy(update={"over_tolerance": not requirements.over_tolerance})
         return self.links(self.application.model_copy(update={"requirements": changed}))
 
     @property
@@ -219,10 +219,10 @@ class Result:
     def alternatives(self, designation: str) -> tuple[Alternative, ...]:
         """The same changes as figures."""
         if designation not in self._alternatives:
-            candidate, found = self._judged(designation), tuple[Alternative, ...]()
+            candidate, alternatives = self._judged(designation), tuple[Alternative, ...]()
             if candidate and self.application and self.catalogue:
-                found = needed_of(candidate, self.application, self.catalogue)
-            self._alternatives[designation] = found
+                alternatives = needed_of(candidate, self.application, self.catalogue)
+            self._alternatives[designation] = alternatives
         return self._alternatives[designation]
 
     @cached_property

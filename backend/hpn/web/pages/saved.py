@@ -54,9 +54,9 @@ async def show_selection(request: Request) -> Response:
 
 
 def _shown(request: Request, reopened: Reopened) -> Response:
-    shown = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
+    values = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
     address = absolute(request, url_of(reopened.saved.id))
-    return page(request, "selection.html", address=address, qr_code=qr_code(address), **shown)
+    return page(request, "selection.html", address=address, qr_code=qr_code(address), **values)
 
 
 async def copy_selection(request: Request) -> Response:
@@ -136,12 +136,12 @@ def _changed_figures(reopened: Reopened, today: Catalogue, gear: str) -> list[tu
 
 def _gears(figures: Sequence[FigureDifference] | None, *, gone: bool) -> list[str]:
     """Candidates of which today's catalogue publishes other figures, or those that it lacks."""
-    found = {
+    gears = {
         difference.candidate
         for difference in figures or ()
         if difference.candidate and (difference.field == "designation") == gone
     }
-    return sorted(found, key=_number)
+    return sorted(gears, key=_number)
 
 
 def _ordering(saved: SavedSelection, catalogue: Catalogue) -> str:

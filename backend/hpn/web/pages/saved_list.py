@@ -42,35 +42,35 @@ class SelectionFilter(Model):
 @or_reason(REASON)
 async def show_selections(request: Request) -> Response:
     """Saved selections, newest first. `/api/v1/selections` says the same as JSON, also to a browser."""
-    given = {name: request.query_params.get(name, "") for name in ("search", "reference", "differs")}
+    query = {name: request.query_params.get(name, "") for name in ("search", "reference", "differs")}
     versions = versions_of(request.app.state)
     cursor = request.query_params.get("cursor") or None
-    shown: dict[str, Any] = {
-        **given,
+    values: dict[str, Any] = {
+        **query,
         "lines": [],
         "errors": {},
         "problem": "",
         "older": "",
-        "newest": onward(ADDRESS, **given),
+        "newest": onward(ADDRESS, **query),
         "later": bool(cursor),
         "versions": versions.key,
     }
     store: Store = request.app.state.store
     status = 422
     try:
-        wanted = SelectionFilter.model_validate(given)
+        wanted = SelectionFilter.model_validate(query)
         changed_by = versions.key if wanted.differs else None
         lines = LineFilter("selection", wanted.search, wanted.reference, changed_by=changed_by)
         part = await store.page(cursor=cursor, limit=LINES_ON_PAGE, wanted=lines)
     except ValidationError as error:
-        shown["errors"] = {fault.location[0]: fault.text for fault in Problem.of(error).errors}
+        values["errors"] = {fault.location[0]: fault.text for fault in Problem.of(error).errors}
     except ValueError:
-        shown["problem"] = NO_SUCH_PART
+        values["problem"] = NO_SUCH_PART
     else:
-        status, shown["lines"] = 200, part.selections
+        status, values["lines"] = 200, part.selections
         request.app.state.todays.note(part.selections)
-        shown["older"] = part.next_cursor and onward(ADDRESS, **given, cursor=part.next_cursor)
-    return await compute(request, "pages", page, request, "selections.html", status, **shown)
+        values["older"] = part.next_cursor and onward(ADDRESS, **query, cursor=part.next_cursor)
+    return await compute(request, "pages", page, request, "selections.html", status, **values)
 
 
 @or_reason(REASON)

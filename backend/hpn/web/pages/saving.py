@@ -97,8 +97,8 @@ def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:
     if answer is None:
         errors = [((problem.name,), problem.message.text) for problem in form.problems]
         raise Problem(422, N_("the inputs have errors: correct them on the page, then save"), errors)
-    given = {field: form.labels[name] for name, field in FIELDS.items()}
-    labels = Labels(**given, ordering_code=_code(form, answer))
+    values = {field: form.labels[name] for name, field in FIELDS.items()}
+    labels = Labels(**values, ordering_code=_code(form, answer))
     return draft_of(catalogue, answer.application, labels, posted.key, owner)
 
 
