@@ -18,7 +18,8 @@ from hpn.files.export import Export
 from hpn.files.workbook.workbook import workbook
 from hpn.fleet.columns import COLUMNS as FLEET
 from hpn.links.labels import LABELS
-from hpn.links.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.links.row_symbols import MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.links.symbols import BY_NAME
 from hpn.links.writer import to_link
 from hpn.web.pages.transfer import write_table
 from hpn.words.reader import Reader

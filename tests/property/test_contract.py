@@ -13,6 +13,7 @@ from tests.build import Json
 from tests.conftest import Supplement
 from tests.property.draw import RANKS, at_random
 from tests.reference import contract
+from tests.reference.contract_gears import Answer, Gear, printed_gears
 from tests.wire import EXPLANATIONS, Selection, select, select_fleet
 
 # Both ways round sums, powers and quotients differently; a power 10/3 of a sum of twelve terms stays far below this.
@@ -26,7 +27,7 @@ def same(given: float | None, expected: float | None) -> bool:
     return given is not None and math.isclose(given, expected, rel_tol=ROUNDING)
 
 
-def differences(reply: Json, expected: contract.Answer) -> Iterator[str]:
+def differences(reply: Json, expected: Answer) -> Iterator[str]:
     """Everything that the contract fixes of a reply and that is otherwise in this one."""
     for name, figure in expected.duty.items():
         if not same(reply["duty"][name], figure):
@@ -62,7 +63,7 @@ def differences(reply: Json, expected: contract.Answer) -> Iterator[str]:
                     yield f"{wanted.gear.name} {check.code} {name}: {got[name]} instead of {getattr(check, name)}"
 
 
-def compare_many(catalogue: Catalogue, gears: list[contract.Gear], cases: list[Json]) -> Counter[object]:
+def compare_many(catalogue: Catalogue, gears: list[Gear], cases: list[Json]) -> Counter[object]:
     """Compare through the batch's code path, and count what the cases reached."""
     reached: Counter[object] = Counter()
     selections = select_fleet([Application.model_validate(case) for case in cases], catalogue)
@@ -86,7 +87,7 @@ def compare_many(catalogue: Catalogue, gears: list[contract.Gear], cases: list[J
 def test_thousands_of_random_applications_get_what_the_contract_says(catalogue: Catalogue) -> None:
     cases = [at_random(random.Random(seed)) for seed in range(3000)]
 
-    reached = compare_many(catalogue, contract.printed_gears(), cases)
+    reached = compare_many(catalogue, printed_gears(), cases)
 
     # A comparison is worth as much as what it reaches: every check in every state, every way to rank and to govern.
     rated_by_input = {"motor_speed", "motor_peak_torque", "motor_rated_torque", "backlash", "torsional_stiffness"}
@@ -117,7 +118,7 @@ def test_random_applications_agree_under_a_supplement_that_rates_some_of_40a_and
         weights="size,stages,weight_kg,source\n40A,1,15,my page\n",
         bearing_envelopes="size,load_coefficient,axial_N,radial_N,source\n" + "\n".join(points) + "\n",
     )
-    gears = contract.printed_gears()
+    gears = printed_gears()
     ratings = {5: (752, 400, 1250), 10: (370, 370, 1250), 20: (700, None, 1250)}
     for gear in gears:
         gear.curve = CURVE.get(gear.size)

@@ -20,7 +20,7 @@ from hpn.physics.motion.torque import Torque, cut, integral
 from hpn.web.door.problems import Problem
 from tests.build import Json, answer
 from tests.property.draw import linear_motions, motions, rotary_motions, signs
-from tests.reference.motion import sampled
+from tests.reference.motion_samples import sampled
 
 CATALOGUE = load_catalogue()
 

@@ -18,10 +18,11 @@ from tests.build import Json, cycle, phase
 from tests.last_bits import WAYS, moved
 from tests.property.draw import RANKS
 from tests.reference import contract
+from tests.reference.contract_gears import Arithmetic, Gear, printed_gears
 from tests.wire import Selection, select_fleet
 
 DIGITS = 40
-EXACT = contract.Arithmetic(lambda value: mpmath.mpf(str(value)), mpmath.fsum, lambda value: int(mpmath.floor(value)))
+EXACT = Arithmetic(lambda value: mpmath.mpf(str(value)), mpmath.fsum, lambda value: int(mpmath.floor(value)))
 
 TORQUES = [0, 5.2, 9, 14, 20, 24, 26, 29, 32, 40, 40.8, 56, 62, 80, 84, 107, 133, 149, 156, 200, 226, 256, 376, 400]
 SPEEDS = [1, 50, 60, 80, 100, 120, 200, 218, 250, 285, 300, 400, 428.5, 500, 600, 750, 850, 857, 1000, 1200, 2000]
@@ -75,12 +76,10 @@ def exactly(value: Any) -> Any:
     return EXACT.number(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
-def exact_gears() -> list[contract.Gear]:
+def exact_gears() -> list[Gear]:
     """Printed gears, of exact numbers."""
-    names = [field.name for field in fields(contract.Gear) if field.name not in ("size", "ratio", "stages")]
-    return [
-        replace(gear, **{name: exactly(getattr(gear, name)) for name in names}) for gear in contract.printed_gears()
-    ]
+    names = [field.name for field in fields(Gear) if field.name not in ("size", "ratio", "stages")]
+    return [replace(gear, **{name: exactly(getattr(gear, name)) for name in names}) for gear in printed_gears()]
 
 
 Decided = list[tuple[str, str, str | None, int | None, float | None]]
@@ -92,7 +91,7 @@ def decided(reply: Json) -> Decided:
     return [tuple(candidate[name] for name in names) for candidate in reply["candidates"]]
 
 
-def expected(case: Json, gears: list[contract.Gear]) -> Decided:
+def expected(case: Json, gears: list[Gear]) -> Decided:
     """The same by the contract in exact arithmetic."""
     with mpmath.workdps(DIGITS):
         answer = contract.answer(exactly(case), gears, EXACT)

@@ -8,116 +8,16 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from tests.reference import handbook as book
+from tests.reference.contract_bearing import at_centre, equivalent, of_wheel
+from tests.reference.contract_gears import FLOATS, Answer, Arithmetic, Candidate, Check, Gear, own_of, peak_of
 
 ROOM = 1e-12
 INFINITE = math.inf
-
-
-@dataclass(frozen=True)
-class Arithmetic:
-    """Numbers to compute with: how a figure becomes one, their sum, and the largest whole number below one."""
-
-    number: Callable[[Any], Any] = float
-    total: Callable[[Iterable[Any]], Any] = math.fsum
-    floor: Callable[[Any], int] = math.floor
-
-
-FLOATS = Arithmetic()
-
-
-@dataclass
-class Gear:
-    """Figures of a gear; None is not published."""
-
-    size: str
-    ratio: int
-    stages: int
-    T_R: float | None = None
-    T_N: float | None = None
-    T_M: float | None = None
-    n_max: float | None = None
-    n_av: float | None = None
-    ambient: tuple[float, float] | None = None
-    weight: float | None = None
-    length: float | None = None
-    backlash: float | None = None
-    accuracy: float | None = None
-    K3: float | None = None
-    F_R: float | None = None
-    F_A: float | None = None
-    curve: Sequence[tuple[float, float]] | None = None  # (radial, axial), from the radial axis to the axial one
-
-    @property
-    def name(self) -> str:
-        return f"HPN-{self.size}-{self.ratio}"
-
-
-@dataclass
-class Check:
-    code: str
-    demand: float | None
-    limit: float | None
-    utilisation: float | None  # infinite where it fails without one
-    status: str
-    at_least: float | None = None
-
-
-@dataclass
-class Candidate:
-    gear: Gear
-    checks: list[Check]
-    figures: dict[str, float | None]
-    status: str = ""
-    utilisation: float | None = None
-    governing: str | None = None
-    rank: int | None = None
-
-    @property
-    def lacks_input(self) -> bool:
-        """True for an unrated gear of which a lower bound says something wherever it is not rated."""
-        unknown = [check for check in self.checks if check.status == "not_rated"]
-        return self.status == "unrated" and all(check.at_least is not None for check in unknown)
-
-
-@dataclass
-class Answer:
-    duty: dict[str, float]
-    candidates: list[Candidate] = field(default_factory=list)
-
-    @property
-    def selected(self) -> str | None:
-        first = self.candidates[0]
-        return first.gear.name if first.status == "suitable" else None
-
-
-def printed_gears() -> list[Gear]:
-    """All gears in the order of the catalogue: by size, then ratio."""
-    gears = []
-    for size, ratios in book.RATIOS.items():
-        for place, ratio in enumerate(ratios):
-            stages = book.STAGES[ratio]
-            gear = Gear(size, ratio, stages)
-            gear.backlash = book.BACKLASH_ARCMIN[size, stages]
-            gear.accuracy = book.TRANSMISSION_ACCURACY_ARCMIN[size, stages]
-            gear.K3 = book.TORSIONAL_STIFFNESS_NM_PER_RAD[size, stages]
-            if size in book.RATED_TORQUE_NM:
-                gear.T_R = book.REPEATED_PEAK_TORQUE_NM[size][place]
-                gear.T_N = book.RATED_TORQUE_NM[size][place]
-                gear.T_M = book.MOMENTARY_PEAK_TORQUE_NM[size][place]
-                gear.n_max = book.MAXIMUM_INPUT_SPEED_RPM[size]
-                gear.n_av = book.AVERAGE_INPUT_SPEED_RPM[size]
-                gear.ambient = book.AMBIENT_TEMPERATURE_DEGC[size]
-                gear.weight = book.WEIGHT_KG[size, stages]
-                gear.length = book.LENGTH_MM[size, stages][1]
-                gear.F_R = book.DYNAMIC_RADIAL_LOAD_N[size]
-                gear.F_A = book.DYNAMIC_AXIAL_LOAD_N[size]
-            gears.append(gear)
-    return gears
 
 
 def answer(application: Mapping[str, Any], gears: Sequence[Gear], by: Arithmetic = FLOATS) -> Answer:
@@ -157,7 +57,7 @@ class _Duty:
 
 def _duty(cycle: Mapping[str, Any], by: Arithmetic) -> _Duty:
     phases, pause = cycle["phases"], cycle.get("pause_s", 0)
-    T_max = max(_peak(p, "torque_Nm") for p in phases)
+    T_max = max(peak_of(p, "torque_Nm") for p in phases)
     way = by.total(abs(p["speed_rpm"]) * p["duration_s"] for p in phases)
     time = by.total(p["duration_s"] for p in phases) + pause
     T_av = T_rms = by.number(0)
@@ -167,19 +67,9 @@ def _duty(cycle: Mapping[str, Any], by: Arithmetic) -> _Duty:
             for p in phases
         ]
         T_av = T_max * by.total(w * r ** (by.number(10) / 3) for w, r, _ in shares) ** (by.number(3) / 10)
-        squares = [(_own(p, "rms_torque_Nm", "torque_Nm") / T_max) ** 2 for p in phases]
+        squares = [(own_of(p, "rms_torque_Nm", "torque_Nm") / T_max) ** 2 for p in phases]
         T_rms = T_max * by.total(s * r for (_, _, s), r in zip(shares, squares, strict=True)) ** (by.number(1) / 2)
-    return _Duty(T_av, way / time, T_max, max(_peak(p, "speed_rpm") for p in phases), T_rms)
-
-
-def _own(phase: Mapping[str, Any], name: str, steady: str) -> float:
-    """A figure of a phase that varies; of a steady one the magnitude of its torque or speed."""
-    own: float = abs(phase[steady]) if phase.get(name) is None else phase[name]
-    return own
-
-
-def _peak(phase: Mapping[str, Any], name: str) -> float:
-    return _own(phase, f"peak_{name}", name)
+    return _Duty(T_av, way / time, T_max, max(peak_of(p, "speed_rpm") for p in phases), T_rms)
 
 
 def _judge(
@@ -352,10 +242,10 @@ def torque_range(cycle: Mapping[str, Any], wishes: Mapping[str, Any]) -> tuple[A
     for p in cycle["phases"]:
         if wishes.get("position_error_at") == "rest" and p["speed_rpm"] != 0:
             continue
-        T, peak, R = p["torque_Nm"], _peak(p, "torque_Nm"), friction if p["speed_rpm"] == 0 else 0
+        T, peak, R = p["torque_Nm"], peak_of(p, "torque_Nm"), friction if p["speed_rpm"] == 0 else 0
         least = p.get("least_torque_Nm")
         if least is None:
-            steady = peak <= abs(T) * (1 + 1e-9) and _own(p, "rms_torque_Nm", "torque_Nm") >= abs(T) * (1 - 1e-9)
+            steady = peak <= abs(T) * (1 + 1e-9) and own_of(p, "rms_torque_Nm", "torque_Nm") >= abs(T) * (1 - 1e-9)
             least = abs(T) if steady else 0
         ends = [-peak, peak] if T == 0 else [least, peak] if T > 0 else [-peak, -least]
         if T == 0 and reverses is False and not signed:
@@ -384,14 +274,14 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
         )
         for p in phases
     ]
-    loads = [(F_R + own[0], F_A + own[1]) for (F_R, F_A), own in zip(loads, _of_wheel(phases, given, by), strict=True)]
+    loads = [(F_R + own[0], F_A + own[1]) for (F_R, F_A), own in zip(loads, of_wheel(phases, given, by), strict=True)]
     x, y, x_c = given.get("radial_position_mm"), given.get("axial_radius_mm", 0), given.get("shaft_centre_mm")
     if isinstance(x_c, Mapping):
         x_c = x_c.get(gear.size, x_c.get("others"))
-    at_centre = [_at_centre(F_R, F_A, x, y, x_c) for F_R, F_A in loads]
+    centred = [at_centre(F_R, F_A, x, y, x_c) for F_R, F_A in loads]
     P = [
-        None if F_R is None else _equivalent(given.get("model", "linear"), F_R, F_A, gear)
-        for F_R, (_, F_A) in zip(at_centre, loads, strict=True)
+        None if F_R is None else equivalent(given.get("model", "linear"), F_R, F_A, gear)
+        for F_R, (_, F_A) in zip(centred, loads, strict=True)
     ]
     required = given.get("life_h", 20000) * (5 if given.get("life_basis") == "L10" else 1)
     k = (100 * 20000 / (duty.n_av * required)) ** (by.number(1) / 3)
@@ -403,7 +293,7 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
         return (cubes / by.total(weights)) ** (by.number(1) / 3)
 
     if len(known) < len(P):
-        plain = [_equivalent(given.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
+        plain = [equivalent(given.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
         least = [p for p in plain if p is not None]
         whole = len(least) == len(plain)
         at_most("output_bearing_load", None, 1.0, least=f_w * max(least) if whole else None)
@@ -413,51 +303,6 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
     at_most("output_bearing_load", f_w * max(known), 1.0)
     at_most("output_bearing_life", f_w * mean, k)
     return 20000 * (100 / duty.n_av) / (f_w * mean) ** 3 if mean > 0 else INFINITE
-
-
-def _of_wheel(phases: Sequence[Any], given: Mapping[str, Any], by: Arithmetic) -> list[tuple[Any, Any]]:
-    """Radial and axial load of each phase that a pinion or pulley on the shaft makes."""
-    drive = given.get("drive")
-    if drive is None:
-        return [(by.number(0), by.number(0))] * len(phases)
-    forces = [2000 * _peak(p, "torque_Nm") / drive["diameter_mm"] for p in phases]
-    if drive["type"] == "belt":
-        return [(given.get("belt_tension_factor", by.number(2)) * max(forces), by.number(0))] * len(phases)
-    helix = math.radians(float(given.get("rack_helix_deg", 0)))
-    across = math.hypot(1, math.tan(math.radians(20)) / math.cos(helix))
-    return [(F * by.number(across), F * by.number(math.tan(helix))) for F in forces]
-
-
-def _at_centre(F_R: float, F_A: float, x: float | None, y: float, x_c: float | None) -> float | None:
-    """Radial load at the shaft's centre that stands for where both act; None where that is not known."""
-    if not x and not (y and F_A):
-        return F_R
-    if x_c is None:
-        return None
-    return F_R * (1 if x is None else max(1, abs(x) / x_c)) + F_A * y / x_c
-
-
-def _equivalent(model: str, F_R: float, F_A: float, gear: Gear) -> float | None:
-    if model == "digitised":
-        return None if gear.curve is None else _along_curve(gear.curve, F_R, F_A)
-    if gear.F_R is None or gear.F_A is None:
-        return None
-    r, a = F_R / gear.F_R, F_A / gear.F_A
-    return r + a if model == "linear" else max(r, r * 56 / 100 + a)
-
-
-def _along_curve(curve: Sequence[tuple[float, float]], F_R: float, F_A: float) -> float:
-    """Length of the load over the length at which its ray meets the curve, found by trying every segment."""
-    if F_R == F_A == 0:
-        return 0.0
-    for (R0, A0), (R1, A1) in itertools.pairwise(curve):
-        # (F_R, F_A) = P * ((R0, A0) + s * (R1 - R0, A1 - A0)), by Cramer's rule for P and P s
-        across = R0 * (A1 - A0) - A0 * (R1 - R0)
-        P = (F_R * (A1 - A0) - F_A * (R1 - R0)) / across
-        Ps = (R0 * F_A - A0 * F_R) / across
-        if P > 0 and -1e-12 <= Ps / P <= 1 + 1e-12:
-            return P
-    raise AssertionError("the curve does not reach from axis to axis")
 
 
 def _conclude(result: Candidate, load_checks: int) -> None:

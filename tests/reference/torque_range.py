@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from tests.reference.motion import Json, _load_of_floats, course
+from tests.reference.motion import Json, course
+from tests.reference.motion_samples import load_of_floats
 
 G = 9.80665
 
@@ -57,7 +58,7 @@ def _per_rad(m: Json) -> float:
 
 def _load(m: Json, move: Json, place: Any, speed: Any, acceleration: Any, sign: float) -> Any:
     per_rad = _per_rad(m)
-    return _load_of_floats(m, move, per_rad, place, speed / per_rad, acceleration / per_rad, sign)
+    return load_of_floats(m, move, per_rad, place, speed / per_rad, acceleration / per_rad, sign)
 
 
 def _stretches(move: Json, way: float, rotary: bool, count: int) -> Any:

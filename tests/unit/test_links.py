@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from hpn.application import Application
 from hpn.links import symbols
+from hpn.links.row_symbols import PHASE_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS
 from hpn.links.symbol import MOTION_PATH
 from hpn.links.writer import to_link
 from hpn.web.form import link_reader
@@ -229,8 +230,8 @@ def test_every_field_of_the_application_has_a_symbol() -> None:
         parts = [part for one in getattr(annotation, "__args__", ()) for part in models(one)]
         return [annotation, *parts] if hasattr(annotation, "model_fields") else parts
 
-    phases = {("duty_cycle", "phases", *symbol.path) for symbol in symbols.PHASE_SYMBOLS}
-    moves = {(*MOTION_PATH, "moves", symbol.path[-1]) for symbol in (*symbols.TURN_SYMBOLS, *symbols.STROKE_SYMBOLS)}
+    phases = {("duty_cycle", "phases", *symbol.path) for symbol in PHASE_SYMBOLS}
+    moves = {(*MOTION_PATH, "moves", symbol.path[-1]) for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
     single = {path for path in leaves(Application) if path[0] != "tolerances"}  # those stand for a field each
     assert single == phases | moves | set(symbols.BY_PATH)
 
@@ -250,7 +251,12 @@ def test_a_canonical_number_is_as_short_as_it_can_be() -> None:
 def test_every_input_stands_in_one_group_of_the_form_by_its_name() -> None:
     grouped = [name for group in symbols.GROUPS for name in group.names]
     assert sorted(["tp", *grouped]) == sorted(symbol.name for symbol in symbols.SYMBOLS)
-    every = (*symbols.PHASE_SYMBOLS, *symbols.BY_PATH.values(), *symbols.TURN_SYMBOLS, *symbols.STROKE_SYMBOLS)
+    every = (
+        *PHASE_SYMBOLS,
+        *symbols.BY_PATH.values(),
+        *TURN_SYMBOLS,
+        *STROKE_SYMBOLS,
+    )
     assert all(symbol.named.name for symbol in every)
 
 

@@ -25,6 +25,7 @@ from tests.build import LIFTING, TURNING, Json, candidate, check, cycle, phase, 
 from tests.conftest import Supplement
 from tests.property.draw import at_random, motions
 from tests.reference import contract, motion
+from tests.reference.contract_gears import printed_gears
 from tests.reference.test_motion import CONTRACT, PENDULUM, SCREW, VISCOUS
 from tests.unit.test_fitting_motors import CURVE, HEADER, OWN
 
@@ -114,7 +115,7 @@ def searched(application: Json, some: list[MotorEntry]) -> list[tuple[Any, ...]]
     found = []
     for motor in some:
         figures = motor.model_dump(exclude={"designation", "weight_kg"}, exclude_none=True)
-        for one in contract.answer(with_wishes(application, motor=figures), contract.printed_gears()).candidates:
+        for one in contract.answer(with_wishes(application, motor=figures), printed_gears()).candidates:
             own = [each.utilisation for each in one.checks if each.code in OF_MOTOR and each.utilisation is not None]
             weight = None if one.gear.weight is None or not motor.weight_kg else one.gear.weight + motor.weight_kg
             row = (one.status, one.gear.name, motor.designation, one.utilisation, one.governing, weight)
@@ -127,7 +128,7 @@ def test_pairs_are_those_that_an_exhaustive_search_finds_in_its_order(soak: bool
     chance, suitable = random.Random(51), 0
     drawn = (at_random(chance) for _ in itertools.count())
     bare = (with_wishes(one, motor=None) for one in drawn)
-    found_some = (one for one in bare if contract.answer(one, contract.printed_gears()).selected)
+    found_some = (one for one in bare if contract.answer(one, printed_gears()).selected)
     for application in itertools.islice(found_some, 4 if soak else 10):
         some = motors(chance, 1000 if soak else 20)
         expected = searched(application, some)

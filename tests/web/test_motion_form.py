@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from starlette.testclient import TestClient
 
 from hpn.application import Application
-from hpn.links import symbols
+from hpn.links import row_symbols, symbols
 from hpn.links.labels import LABELS
 from hpn.links.rows import MOVE_COLUMNS
 from hpn.links.writer import to_link
@@ -57,7 +57,7 @@ def moves_of(query: str) -> Sequence[Move]:
 
 
 def bodies(*rows: dict[str, Any]) -> str:
-    names = [symbol.name for symbol in symbols.BODY_SYMBOLS]
+    names = [symbol.name for symbol in row_symbols.BODY_SYMBOLS]
     return urlencode([(name, row.get(name, "")) for row in rows for name in names])
 
 
@@ -158,7 +158,7 @@ def test_row_buttons_edit_moves_as_they_edit_phases() -> None:
 
 
 def test_the_columns_of_a_profile_are_those_that_the_model_lets_it_have() -> None:
-    for table, model, way in ((symbols.TURN_SYMBOLS, Turn, 90.0), (symbols.STROKE_SYMBOLS, Stroke, 500.0)):
+    for table, model, way in ((row_symbols.TURN_SYMBOLS, Turn, 90.0), (row_symbols.STROKE_SYMBOLS, Stroke, 500.0)):
         for profile, columns in MOVE_COLUMNS.items():
             for symbol in table[1:]:
                 start = {"profile": profile, "time_s": 2.0} | ({} if profile == "dwell" else {model.WAY: way})

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
-from hpn.links.symbols import PHASE_SYMBOLS, SYMBOLS
+from hpn.links.row_symbols import PHASE_SYMBOLS
+from hpn.links.symbols import SYMBOLS
 from hpn.web.app import create_app
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.words.quantities import QUANTITIES

@@ -1,21 +1,19 @@
-"""The tables of inputs: symbol in links, place in the application, and how the form shows each.
+"""The table of inputs: symbol in links, place in the application, and how the form shows each.
 
 Form, link writer and link reader are loops over it. An input's name and sign stand in `hpn.words.quantities`.
 """
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 
-from hpn.application.phase import Phase
 from hpn.documents.common import COMMON
 from hpn.engine.notice import AREAS
 from hpn.links import labels
-from hpn.links.rows import EVEN, OF_ANY_ROW, OPTIONAL, shown_columns, used_columns
+from hpn.links.row_symbols import BODY_SYMBOLS, PHASE_SYMBOLS, TURN_SYMBOLS, move_symbols
 from hpn.links.symbol import MOTION_PATH, Symbol
 from hpn.physics.motion.mechanisms import CLASSES, Rotary
-from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
-from hpn.tables.inputs import NAME, PHASE, Input, Inputs
+from hpn.tables.inputs import Input, Inputs
 from hpn.tables.numbers import Kind
 from hpn.words.quantities import CANDIDATE
 from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
@@ -37,9 +35,6 @@ class FormGroup:
         """Its inputs."""
         return tuple(BY_NAME[name] for name in self.names)
 
-
-PHASE_SYMBOLS = tuple(Symbol(each.role, (each.place,), each.kind) for each in (*PHASE, NAME))
-"""Repeated once per phase, all of equal length."""
 
 YEAR = N_("A year (yr) counts as 8766 h, without a standstill.")
 """Note beside a life: years are read as 365.25 days of operation."""
@@ -272,70 +267,6 @@ def mechanism_symbols(mechanism: str) -> tuple[Symbol, ...]:
     return tuple(symbols)
 
 
-_OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
-"""Defaults of a move."""
-
-
-def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[Symbol, ...]:
-    jerk = acceleration.replace("acceleration", "jerk").replace("s2", "s3")
-    fields = ("profile", way, "time_s", speed, acceleration, "jerk_share", jerk, external)
-    ramps = ("acceleration_time_s", "deceleration_time_s", acceleration.replace("acc", "dec"))
-    return tuple(
-        Symbol(
-            name, ("motion", "move", field), "text" if name == "mv" else "number", placeholder=_OF_A_MOVE.get(name, "")
-        )
-        for name, field in zip(
-            ("mv", "ms", "mt", "mn", "ma", "mj", *OPTIONAL["jerk"], "mx", *OPTIONAL["ramps"], *OPTIONAL["unequal"]),
-            (*fields, *ramps),
-            strict=True,
-        )
-    ) + tuple(symbol for symbol in PHASE_SYMBOLS if symbol.name in OF_ANY_ROW)
-
-
-TURN_SYMBOLS = _of_moves("angle_deg", "speed_rpm", "acceleration_deg_per_s2", "external_torque_Nm")
-STROKE_SYMBOLS = _of_moves("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2", "external_force_N")
-"""Repeated once per move, all of equal length; a move carries loads and its name as a phase does."""
-
-BODY_SYMBOLS = (
-    Symbol("qs", ("body", "shape"), "text"),
-    Symbol("qm", ("body", "mass_kg")),
-    Symbol("qr", ("body", "density_g_per_cm3")),
-    Symbol("qd", ("body", "diameter_mm")),
-    Symbol("qi", ("body", "inner_diameter_mm")),
-    Symbol("ql", ("body", "length_mm")),
-    Symbol("qw", ("body", "width_mm")),
-    Symbol("qh", ("body", "height_mm")),
-    Symbol("qe", ("body", "distance_mm"), placeholder="0"),
-    Symbol("qn", ("body", "count"), "whole", placeholder="1"),
-)
-"""Bodies of the form whose moment of inertia is worked out, repeated once per body; no link has them."""
-
-
-_PLACES = {
-    name: k
-    for k, name in enumerate((NAME.role, "mv", "ms", "mt", "mn", *OPTIONAL["ramps"], EVEN, *OPTIONAL["unequal"]))
-}
-"""Places of columns whose order in a table is another than in a link."""
-
-
-def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Symbol]:
-    """Columns of phases or moves that a table has, the name first and the ramps of a move behind its speed."""
-    by_name = {symbol.name: symbol for symbol in symbols}
-    columns = shown_columns(by_name, groups)
-    return [by_name[name] for name in sorted(columns, key=lambda name: _PLACES.get(name, len(_PLACES)))]
-
-
-def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:
-    """Columns of a table of phases: torque, speed and duration, and of loads and what varies the groups in use."""
-    used = {s.name for s in PHASE_SYMBOLS if any(getattr(phase, s.path[0]) is not None for phase in phases)}
-    return tuple(PHASE_BY_NAME[name] for name in used_columns(PHASE_BY_NAME, used))
-
-
-def move_symbols(mechanism: str) -> tuple[Symbol, ...]:
-    """Symbols of the moves of a mechanism: an unknown one turns."""
-    return STROKE_SYMBOLS if mechanism in CLASSES else TURN_SYMBOLS
-
-
 GROUPS = (
     FormGroup("load", N_("Loads"), ("fm", "dt", "dd", "hx", "kb", "FR", "FA", "fw", "Tk", "Nk"), folded=False),
     FormGroup("lever", N_("Where the loads act"), ("xR", "yA", "xc")),
@@ -367,12 +298,6 @@ GROUPS = (
 )
 """The form below its duty cycle, which the pause belongs to."""
 
-PHASE_BY_NAME = {symbol.name: symbol for symbol in PHASE_SYMBOLS}
-PHASE_BY_LEAF = {symbol.path[0]: symbol for symbol in PHASE_SYMBOLS}
-BODY_BY_NAME = {symbol.name: symbol for symbol in BODY_SYMBOLS}
-BODY_BY_LEAF = {symbol.path[-1]: symbol for symbol in BODY_SYMBOLS}
-MOVE_BY_NAME = {symbol.name: symbol for symbol in TURN_SYMBOLS}
-MOVE_BY_LEAF = {symbol.path[-1]: symbol for symbol in (*TURN_SYMBOLS, *STROKE_SYMBOLS)}
 BY_NAME = {symbol.name: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 BY_PATH = {symbol.path: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 COMMON_NAMES = {BY_PATH[path].name: name for name in COMMON if (path := tuple(name.split("."))) in BY_PATH}

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 from hpn.application import Application
 from hpn.application.tolerances import Deviation, Tolerance
+from hpn.links.row_symbols import MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
 from hpn.links.symbol import MOTION_PATH
-from hpn.links.symbols import BY_NAME, BY_PATH, MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
+from hpn.links.symbols import BY_NAME, BY_PATH
 from hpn.tables.numbers import read_value
 from hpn.words.wording import N_, Sentence
 

@@ -18,7 +18,8 @@ from hpn.application import (
     Requirements,
 )
 from hpn.application.motion import Motion
-from hpn.links.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
+from hpn.links.row_symbols import PHASE_SYMBOLS, move_symbols
+from hpn.links.symbols import MECHANISM_SYMBOLS, SYMBOLS
 from hpn.links.tolerances import written
 from hpn.tables.by_size import BySize, Part
 from hpn.words.designations import OTHERS

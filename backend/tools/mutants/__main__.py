@@ -46,10 +46,10 @@ BESIDE = {"selection": ("candidates", "allowed")}
 NEAREST = {
     "equations": ["tests/reference/test_edges.py", "tests/reference/test_equations.py"],
     "bearing": ["tests/reference/test_edges.py", "tests/reference/test_bearing.py"],
-    "stop": ["tests/property/test_stiffness.py", "tests/unit/test_stiff_exact_safe.py"],
+    "stop": ["tests/property/test_stiffness.py", "tests/unit/test_brake_stops.py"],
     "stiffness": ["tests/property/test_stiffness.py", "tests/unit/test_stiff_exact_safe.py"],
     "shaft_load": ["tests/reference/test_shaft_load.py", "tests/unit/test_shaft_load.py"],
-    "stops": ["tests/unit/test_stiff_exact_safe.py", "tests/property/test_stiffness.py"],
+    "stops": ["tests/unit/test_brake_stops.py", "tests/property/test_stiffness.py"],
     "checks": ["tests/unit/test_check_texts.py", "tests/unit/test_checks.py"],
     "evaluation": [
         "tests/property/test_order.py",

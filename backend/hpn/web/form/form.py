@@ -6,9 +6,10 @@ from urllib.parse import urlencode
 
 from hpn.application import Application
 from hpn.links.labels import LABELS, query_of
+from hpn.links.row_symbols import PHASE_SYMBOLS, move_symbols, table_columns
 from hpn.links.rows import ROWS_IN_TABLE, TOLERANCE, WIDTHS, filled
 from hpn.links.symbol import Symbol
-from hpn.links.symbols import MECHANISM_SYMBOLS, PHASE_SYMBOLS, mechanism_symbols, move_symbols, table_columns, units_of
+from hpn.links.symbols import MECHANISM_SYMBOLS, mechanism_symbols, units_of
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
 from hpn.tables.by_size import BySize

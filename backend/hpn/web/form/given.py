@@ -9,21 +9,9 @@ from hpn.application.motion import MAXIMUM_MOVES
 from hpn.application.shaft_centre import MOST_SIZES
 from hpn.application.tolerances import MOST_TOLERANCES
 from hpn.links.labels import LABELS
+from hpn.links.row_symbols import BODY_BY_NAME, MOVE_BY_LEAF, MOVE_BY_NAME, PHASE_BY_NAME, PHASE_SYMBOLS, TURN_SYMBOLS
 from hpn.links.rows import EVEN, OF_ANY_ROW, SHARED, TEXT, TOLERANCE, FormTable, cells_of, groups_of, shown_columns
-from hpn.links.symbols import (
-    BODY_BY_NAME,
-    BY_NAME,
-    BY_SIZE,
-    MECHANISM_SYMBOLS,
-    MOVE_BY_LEAF,
-    MOVE_BY_NAME,
-    PHASE_BY_NAME,
-    PHASE_SYMBOLS,
-    SYMBOLS,
-    TURN_SYMBOLS,
-    mechanism_symbols,
-    units_of,
-)
+from hpn.links.symbols import BY_NAME, BY_SIZE, MECHANISM_SYMBOLS, SYMBOLS, mechanism_symbols, units_of
 from hpn.physics.motion.bodies import MOST_BODIES
 from hpn.tables.by_size import BySize, by_size
 from hpn.tables.inputs import NAME

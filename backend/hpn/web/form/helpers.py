@@ -9,9 +9,9 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from hpn.links.row_symbols import BODY_BY_NAME
 from hpn.links.rows import filled
 from hpn.links.symbol import Symbol
-from hpn.links.symbols import BODY_BY_NAME
 from hpn.physics.motion.bodies import Body, BodySum, sum_of
 from hpn.tables.numbers import read_value
 from hpn.web.form.given import FieldProblem, Given

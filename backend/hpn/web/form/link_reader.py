@@ -15,9 +15,10 @@ from pydantic import ValidationError
 from hpn.application import Application
 from hpn.links import tolerances
 from hpn.links.labels import LABELS
+from hpn.links.row_symbols import MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
 from hpn.links.rows import TOLERANCE, filled
 from hpn.links.symbol import MOTION_PATH, Symbol
-from hpn.links.symbols import BY_NAME, BY_PATH, BY_SIZE, MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
+from hpn.links.symbols import BY_NAME, BY_PATH, BY_SIZE
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables.by_size import BySize, by_size
 from hpn.tables.inputs import NAME

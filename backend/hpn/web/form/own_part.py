@@ -8,9 +8,10 @@ from urllib.parse import quote
 from pydantic import ValidationError
 
 from hpn.application.tolerances import Tolerance
+from hpn.links.row_symbols import PHASE_SYMBOLS, move_symbols
 from hpn.links.rows import TOLERANCE
 from hpn.links.symbol import MOTION_PATH, Symbol
-from hpn.links.symbols import BY_SIZE, MECHANISM_SYMBOLS, PHASE_SYMBOLS, SYMBOLS, move_symbols
+from hpn.links.symbols import BY_SIZE, MECHANISM_SYMBOLS, SYMBOLS
 from hpn.links.tolerances import text_of
 from hpn.links.writer import shortened
 from hpn.tables.by_size import BySize, Part

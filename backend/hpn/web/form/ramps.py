@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 from hpn.application import Application
+from hpn.links.row_symbols import move_symbols
 from hpn.links.rows import EVEN, OPTIONAL, filled
-from hpn.links.symbols import move_symbols
 from hpn.web.form.given import Given
 
 COLUMNS = {"time": OPTIONAL["ramps"], "acceleration": (EVEN, *OPTIONAL["unequal"])}

@@ -5,8 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from hpn.application.tolerances import WITH_VALUES
+from hpn.links.row_symbols import BODY_BY_LEAF, STROKE_SYMBOLS, TURN_SYMBOLS
 from hpn.links.symbol import Symbol
-from hpn.links.symbols import BODY_BY_LEAF, MECHANISM_SYMBOLS, STROKE_SYMBOLS, TURN_SYMBOLS
+from hpn.links.symbols import MECHANISM_SYMBOLS
 from hpn.physics.motion.refusals import REFUSALS
 from hpn.words.terms import PROFILES
 from hpn.words.units import suffix_of

@@ -8,8 +8,9 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from hpn.links.row_symbols import MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.links.rows import ROWS_IN_TABLE, FormTable
-from hpn.links.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.links.symbols import BY_NAME
 from hpn.links.tolerances import LONGEST, WRITTEN, Side, Sides, sides_of
 from hpn.tables.cells import DASHES
 from hpn.tables.numbers import Notation, read_decimal

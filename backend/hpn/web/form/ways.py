@@ -7,8 +7,9 @@ from urllib.parse import parse_qsl, urlencode
 
 from hpn.application import Application, DutyCycle
 from hpn.application.phase import Phase
+from hpn.links.row_symbols import PHASE_SYMBOLS
 from hpn.links.rows import OF_ANY_ROW
-from hpn.links.symbols import PHASE_SYMBOLS, mechanism_symbols
+from hpn.links.symbols import mechanism_symbols
 from hpn.links.writer import to_link
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry

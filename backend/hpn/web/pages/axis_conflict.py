@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from urllib.parse import urlencode
 
 from hpn.catalogue import Catalogue
+from hpn.links.row_symbols import MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.links.rows import TOLERANCE
-from hpn.links.symbols import BY_NAME, MOVE_BY_NAME, PHASE_BY_NAME, units_of
+from hpn.links.symbols import BY_NAME, units_of
 from hpn.links.symbols import LABELS as NAMES
 from hpn.web.door.visit import current
 from hpn.web.form.given import CYCLE_NAMES, Pairs

@@ -14,8 +14,9 @@ from hpn.catalogue.ordering import OrderingCode, ordering_code, read_ordering_co
 from hpn.documents.axis import Axis
 from hpn.documents.common import COMMON, flat, is_common
 from hpn.documents.merge import Resolved, resolve
+from hpn.links.row_symbols import MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.links.rows import TEXT, TOLERANCE
-from hpn.links.symbols import BY_NAME, BY_PATH, COMMON_NAMES, MOVE_BY_NAME, PHASE_BY_NAME
+from hpn.links.symbols import BY_NAME, BY_PATH, COMMON_NAMES
 from hpn.links.writer import to_link
 from hpn.store import Machine, SavedAxis
 from hpn.tables.numbers import read_value

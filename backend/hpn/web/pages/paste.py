@@ -17,8 +17,9 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import pointer, sentence_of
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
+from hpn.links.row_symbols import PHASE_BY_NAME
 from hpn.links.rows import TEXT, TOLERANCE, filled, used_columns
-from hpn.links.symbols import BY_NAME, PHASE_BY_NAME
+from hpn.links.symbols import BY_NAME
 from hpn.links.writer import to_link
 from hpn.tables.files import TableBounds, packed, tidied, unpacked
 from hpn.tables.inputs import CYCLE, NAME, PHASE_ROLES

@@ -26,7 +26,7 @@ from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
 from hpn.installed import data_folder, has_extra
-from hpn.links import symbols
+from hpn.links import row_symbols, symbols
 from hpn.links.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS, ROWS_IN_TABLE
 from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
@@ -218,7 +218,7 @@ def _followed(_: Context, moves: Iterable[Move]) -> dict[str, str]:
     return {
         f"{symbol.name}-{at}": reader.figure(value, symbol.unit)
         for at, move in enumerate(moves)
-        for symbol, value in ((symbols.MOVE_BY_LEAF[field], value) for field, value in move.followed.items())
+        for symbol, value in ((row_symbols.MOVE_BY_LEAF[field], value) for field, value in move.followed.items())
     }
 
 
@@ -328,6 +328,7 @@ GLOBALS: dict[str, Any] = {
     "reader": current,
     "SHAPES": SHAPES,
     "today": lambda: datetime.now(UTC).date().isoformat(),
+    "row_symbols": row_symbols,
     "symbols": symbols,
     "ways": ways,
     "VERDICTS": VERDICTS,

@@ -9,7 +9,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.application import Application, DutyCycle
-from hpn.links.symbols import columns_used
+from hpn.links.row_symbols import columns_used
 from hpn.tables.cells import Decimal, harmless, written
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
