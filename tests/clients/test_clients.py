@@ -159,8 +159,8 @@ def _by_maven(folder: Path, main: str) -> list[object]:
 
 
 def by_java_generator(document: Path, folder: Path) -> list[object]:
-    """Command for the journey with openapi-generator on Java's own HTTP client, which offers HTTP/2 first."""
-    _generate(document, folder, "java", "--library", "native")
+    """Command for the journey with openapi-generator in Java, without any option."""
+    _generate(document, folder, "java")
     shutil.copy(JOURNEYS / "Journey.java", folder / "src/main/java")
     return _by_maven(folder, "Journey")
 

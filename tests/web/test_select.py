@@ -332,3 +332,39 @@ def test_the_link_of_a_reply_leads_to_a_page_and_back_to_the_same_link(api: Test
     body = api.post(PATH, json=EXAMPLE | {"output_load": {"radial_N": 1e-7, "axial_N": -2.5}}).json()
 
     assert api.get(body["link"]).status_code == 200
+
+
+# --- A part of the reply ----------------------------------------------------------------------------------------------
+
+
+def test_the_best_candidates_and_some_fields_are_those_of_the_whole_reply(api: TestClient) -> None:
+    whole = api.post(PATH, json=worked_example()).json()
+
+    def part(query: str) -> Any:
+        return api.post(f"{PATH}?{query}", json=worked_example()).raise_for_status().json()
+
+    assert part("top=3") == whole | {"candidates": whole["candidates"][:3]}
+    assert part("top=1000") == part("fields=" + ",".join(whole)) == whole
+    assert part("fields=selected, link") == {"selected": whole["selected"], "link": whole["link"]}
+    assert part("top=2&fields=duty,candidates.designation,candidates.checks") == {
+        "duty": whole["duty"],
+        "candidates": [{name: one[name] for name in ("designation", "checks")} for one in whole["candidates"][:2]],
+    }
+    assert part("top=1&fields=candidates,candidates.size") == {"candidates": whole["candidates"][:1]}
+    # Over a tolerance alone there is one; without any a reply lacks the field, whoever asks for it.
+    assert part("fields=tolerance,selected") == {"selected": whole["selected"]}
+
+
+@pytest.mark.parametrize(
+    ("query", "pointer"),
+    [
+        *(("top=0", "/top"), ("top=1001", "/top"), ("top=x", "/top"), ("top=1&top=2", "/top"), ("fields=", "/fields")),
+        *(("fields=nothing", "/fields"), ("fields=selected,candidates.nothing", "/fields")),
+        *(("fields=axes.name", "/fields"), ("fields=candidates.", "/fields"), ("fields=" + "a" * 1001, "/fields")),
+    ],
+)
+def test_a_part_that_there_is_none_of_is_refused_by_its_parameter(api: TestClient, query: str, pointer: str) -> None:
+    reply = api.post(f"{PATH}?{query}", json=EXAMPLE)
+
+    assert reply.status_code == 422
+    assert [error["pointer"] for error in reply.json()["errors"]] == [pointer]

@@ -1,4 +1,11 @@
-"""The catalogue: CSV tables and a supplement over them, as gears with a source for every figure."""
+"""The catalogue: CSV tables and a supplement over them, as gears with a source for every figure.
+
+`hpn.catalogue` is this room and a function of the package, too: called, it gives the gears as Python shows them.
+"""
+
+import sys
+from types import ModuleType
+from typing import Any
 
 from hpn.catalogue.catalogue import (
     AVERAGING_S,
@@ -24,3 +31,15 @@ __all__ = [
     "SeriesFigure",
     "load_catalogue",
 ]
+
+
+class _CallableRoom(ModuleType):
+    """The room, which `hpn.catalogue()` calls."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        import hpn
+
+        return hpn.Gears.of(*args, **kwargs)
+
+
+sys.modules[__name__].__class__ = _CallableRoom

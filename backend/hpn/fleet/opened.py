@@ -5,11 +5,13 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import pyarrow as pa
+
 from hpn.fleet.columns import AXIS, COLUMNS, InputColumn, tolerance_column
 from hpn.fleet.csv_tables import CsvTable, GzipCsvTable
 from hpn.fleet.order import FleetError, status_of, suffix_of, wrong_encoding
 from hpn.fleet.tables import AxisTable
-from hpn.fleet.typed import ArrowTable, ParquetTable
+from hpn.fleet.typed import ArrowTable, ParquetTable, TableInMemory
 from hpn.words.likeness import likeness
 
 FORMATS: dict[str, type[AxisTable]] = {
@@ -42,8 +44,18 @@ def open_axes(
     table = FORMATS[suffix](path, ignored, content, columns)
     if isinstance(table, CsvTable) and (said := wrong_encoding(table.head)):
         raise FleetError(f"{path}: {said}")
-    known = (AXIS, *columns)
-    table.ignored += tuple(name for name in table.indices if name not in known and name not in ignored)
+    return _usable(table)
+
+
+def axes_in_memory(table: pa.Table, ignored: Sequence[str] = ()) -> AxisTable:
+    """A table of Arrow that is in memory; raises FleetError as `open_axes` does."""
+    return _usable(TableInMemory(table, ignored))
+
+
+def _usable(table: AxisTable) -> AxisTable:
+    """The table without the indices of pandas; raises FleetError for its columns."""
+    known = (AXIS, *table.columns)
+    table.ignored += tuple(name for name in table.indices if name not in known and name not in table.ignored)
     _require(table, [*known], [AXIS, *(column.name for column in COLUMNS.phases.values() if column.required)])
     return table
 

@@ -19,7 +19,7 @@ from hpn.fleet.gathering import axes_of, slices
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import FleetError, Order
 from hpn.fleet.outcome import outcome
-from hpn.fleet.tables import Progress, RowBatch
+from hpn.fleet.tables import AxisTable, Progress, RowBatch
 from hpn.fleet.writing import Outcomes, unfinished
 
 SLICE_AXES, SLICE_WITH_CANDIDATES = 16_384, 1_024
@@ -100,16 +100,10 @@ def size_fleet(
     table = open_axes(order.axes, order.ignored)
     for name in table.ignored[len(order.ignored) :]:
         note_ignored(table.path, name)
-    most = SLICE_AXES if order.candidates is None else SLICE_WITH_CANDIDATES
-    batches = (batch for axes in axes_of(table) for batch in slices(axes, most))
-    size = partial(outcome, catalogue=catalogue, with_candidates=order.candidates is not None)
     with _alone(order.answers), ExitStack() as stack:
         outcomes = Outcomes(order.answers, table.axis_type, list(order.targets))
         stack.callback(outcomes.remove)
-        for result in engine(size, batches):
-            outcomes.add(result)
-            watch(table.progress)
-        outcomes.close()
+        _size(table, catalogue, engine, outcomes, watch, with_candidates=order.candidates is not None)
         axis = pa.int64() if table.has_untyped_axes and outcomes.are_whole else table.written_axis_type
         rows, torn = {}, outcomes.torn()
         for kind, target in order.targets.items():
@@ -119,6 +113,31 @@ def size_fleet(
         for target in order.targets.values():
             os.replace(unfinished(target), target)
     return rows
+
+
+def size_table(table: AxisTable, catalogue: Catalogue, kind: str = "answers", engine: Engine = here) -> pa.Table:
+    """Size all axes of a table; gives the answers, or what else is wanted of them, in memory."""
+    outcomes = Outcomes(None, table.axis_type, [kind])
+    _size(table, catalogue, engine, outcomes, with_candidates=kind == "candidates")
+    return outcomes.table(kind, table.written_axis_type, outcomes.torn())
+
+
+def _size(
+    table: AxisTable,
+    catalogue: Catalogue,
+    engine: Engine,
+    outcomes: Outcomes,
+    watch: Watch = lambda _: None,
+    *,
+    with_candidates: bool,
+) -> None:
+    """Add the outcomes of all axes."""
+    most = SLICE_WITH_CANDIDATES if with_candidates else SLICE_AXES
+    batches = (batch for axes in axes_of(table) for batch in slices(axes, most))
+    for result in engine(partial(outcome, catalogue=catalogue, with_candidates=with_candidates), batches):
+        outcomes.add(result)
+        watch(table.progress)
+    outcomes.close()
 
 
 @contextmanager

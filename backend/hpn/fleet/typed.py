@@ -5,6 +5,7 @@ from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -219,3 +220,20 @@ class ArrowTable(TypedTable):
                     with self.readable(f"record batch {place} "):
                         batch = self.batch(rows.slice(start, self.batch_rows))
                     yield batch
+
+
+class TableInMemory(TypedTable):
+    """A table of Arrow that is in memory, of whatever library."""
+
+    def __init__(self, table: pa.Table, ignored: Sequence[str] = ()) -> None:
+        super().__init__(Path("frame"), ignored)
+        self._table = table
+
+    @property
+    def given(self) -> pa.Schema:
+        return self._table.schema
+
+    def _batches(self) -> Iterator[RowBatch]:
+        for rows in self._table.to_batches(max_chunksize=self.batch_rows):
+            with self.readable():
+                yield self.batch(rows)

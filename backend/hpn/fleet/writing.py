@@ -51,13 +51,22 @@ def _typed(table: pa.Table, schema: pa.Schema) -> pa.Table:
     return table.set_column(place, schema.field(place), uuids_of(table[AXIS])).cast(schema)
 
 
-class Outcomes:
-    """Outcomes of the axes so far, by kind, in files beside the answers: a batch for each."""
+def columns_of(kind: str, axis: pa.DataType) -> pa.Schema:
+    """Columns that the outcome of a kind is given in."""
+    schema = FIELDS[kind](axis)
+    return pa.schema([field for field in schema if field.name not in (ROW, FAULTS)])
 
-    def __init__(self, answers: Path, axis: pa.DataType, kinds: Sequence[str]) -> None:
-        self._paths = {kind: unfinished(answers, f".{kind}") for kind in dict.fromkeys(("answers", *kinds))}
-        self._axis = axis
-        self._files = {kind: pa.ipc.new_stream(str(path), FIELDS[kind](axis)) for kind, path in self._paths.items()}
+
+class Outcomes:
+    """Outcomes of the axes so far, by kind: a batch for each, in files beside the answers, or in memory without any."""
+
+    def __init__(self, answers: Path | None, axis: pa.DataType, kinds: Sequence[str]) -> None:
+        kinds = list(dict.fromkeys(("answers", *kinds)))
+        self._paths = {} if answers is None else {kind: unfinished(answers, f".{kind}") for kind in kinds}
+        self._memory = {} if self._paths else {kind: pa.BufferOutputStream() for kind in kinds}
+        self._contents = dict[str, pa.Buffer]()
+        targets = {kind: str(path) for kind, path in self._paths.items()} or self._memory
+        self._files = {kind: pa.ipc.new_stream(target, FIELDS[kind](axis)) for kind, target in targets.items()}
         self._hashes = [np.empty(0, np.int64)]
         self.are_whole = True
         """True for axes that are all written as whole numbers."""
@@ -76,6 +85,7 @@ class Outcomes:
         """End the files; they can be read from then on."""
         for file in self._files.values():
             file.close()
+        self._contents = {kind: memory.getvalue() for kind, memory in self._memory.items()}
 
     def remove(self) -> None:
         """Remove the files."""
@@ -84,18 +94,25 @@ class Outcomes:
 
     def write(self, path: Path, kind: str, axis: pa.DataType, torn: frozenset[Any]) -> int:
         """Write the file of a kind with axes of a type, as far as its format has it; gives its number of rows."""
-        axis = pa.string() if is_uuid(axis) and format_of(path) in WITHOUT_UUIDS else axis
-        schema, rows, seen = FIELDS[kind](axis), 0, set[Any]()
-        for name in (ROW, FAULTS):
-            schema = schema.remove(schema.get_field_index(name)) if name in schema.names else schema
-        with closing(WRITERS[format_of(path)](str(path), schema)) as writer:
-            for answers, table in zip(self._read("answers"), self._read(kind), strict=True):
-                whole = _whole(kind, table, answers, torn, seen) if torn else table
-                writer.write_table(_typed(whole.select(schema.names), schema))
-                rows += whole.num_rows
+        axis, rows = pa.string() if is_uuid(axis) and format_of(path) in WITHOUT_UUIDS else axis, 0
+        with closing(WRITERS[format_of(path)](str(path), columns_of(kind, axis))) as writer:
+            for table in self._tables(kind, axis, torn):
+                writer.write_table(table)
+                rows += table.num_rows
         with path.open("rb") as file:
             os.fsync(file.fileno())
         return rows
+
+    def table(self, kind: str, axis: pa.DataType, torn: frozenset[Any]) -> pa.Table:
+        """The outcome of a kind as one table."""
+        return pa.concat_tables([columns_of(kind, axis).empty_table(), *self._tables(kind, axis, torn)])
+
+    def _tables(self, kind: str, axis: pa.DataType, torn: frozenset[Any]) -> Iterator[pa.Table]:
+        """The outcome of a kind, with axes of a type and one row for each torn one."""
+        schema, seen = columns_of(kind, axis), set[Any]()
+        for answers, table in zip(self._read("answers"), self._read(kind), strict=True):
+            whole = _whole(kind, table, answers, torn, seen) if torn else table
+            yield _typed(whole.select(schema.names), schema)
 
     def answers(self, torn: frozenset[Any]) -> Iterator[pa.Table]:
         """The answers, with the reasons of axes that are rejected; names of axes are text."""
@@ -105,7 +122,8 @@ class Outcomes:
             yield whole.set_column(0, AXIS, whole[AXIS].cast(pa.string()))
 
     def _read(self, kind: str) -> Iterator[pa.Table]:
-        with pa.OSFile(str(self._paths[kind])) as file, pa.ipc.open_stream(file) as batches:
+        source = pa.OSFile(str(self._paths[kind])) if self._paths else pa.BufferReader(self._contents[kind])
+        with source, pa.ipc.open_stream(source) as batches:
             for batch in batches:
                 yield pa.Table.from_batches([batch])
 

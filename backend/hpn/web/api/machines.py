@@ -1,9 +1,9 @@
 """Machines over REST: create, list, read, change, delete."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 import msgspec
 from fastapi import APIRouter, Query
@@ -24,6 +24,7 @@ from hpn.web.api import schemas
 from hpn.web.api.lists import KindQuery, linked, part_of
 from hpn.web.api.machine_tables import TABLES, draft_of_table
 from hpn.web.api.replies import JSONBytes, SavedReply, encode
+from hpn.web.api.wanted import FieldNames, field_names
 from hpn.web.columns import common_of, drafts_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, content_type_of, parsed, read_body
@@ -152,13 +153,6 @@ Fields = Annotated[
 ]
 
 
-class FieldNames(NamedTuple):
-    """Names of the fields of a machine that are wanted, and of those of its axes."""
-
-    names: Collection[str]
-    of_axes: Collection[str]
-
-
 @router.get(
     "",
     dependencies=[admit("listing")],
@@ -204,7 +198,7 @@ async def read_machine(
 
 async def _reply(request: Request, id: str, wanted: FieldNames | None) -> Response:
     """A machine, or some fields of it; where these are none of its axes, no axis is read."""
-    machine = await found(request, id, None if wanted is None or wanted.of_axes else [])
+    machine = await found(request, id, None if wanted is None or wanted.of_each else [])
     body = await compute(request, "pages", _whole, machine, wanted)
     return JSONBytes(body, headers={"ETag": tag_of(machine), "Cache-Control": "no-cache"})
 
@@ -217,14 +211,11 @@ async def _wanted(request: Request, id: str, fields: str | None) -> FieldNames |
     """Fields of a machine by their names; Problem 404 where there is none, 422 for a name that it hasn't."""
     if fields is None:
         return None
-    names = {name.strip() for name in fields.split(",")}
-    of_axes = {name.removeprefix("axes.") for name in names if name.startswith("axes.")}
-    unknown = {name for name in names if not name.startswith("axes.")} - set(replies.MachineReply.__struct_fields__)
-    if unknown := unknown | (of_axes - replies.PARTS.keys()):
+    try:
+        return field_names(fields, "a machine", replies.MachineReply.__struct_fields__, "axes", replies.PARTS)
+    except Problem:
         await found(request, id, [])
-        detail = f"names {min(unknown)!r:.80}, which is no field of a machine"
-        raise Problem(422, f"fields {detail}", [(("fields",), detail)])
-    return FieldNames(names, replies.PARTS if "axes" in names else of_axes)
+        raise
 
 
 @router.patch(
