@@ -3,9 +3,10 @@
 import json
 import random
 from collections.abc import Callable
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
-from zipfile import ZipFile
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import msgspec
 import openpyxl
@@ -99,11 +100,14 @@ def test_an_altered_answer_inside_a_file_is_named_though_the_lines_agree_with_it
     assert any(one.place.startswith("result.json/candidates/") for one in found)
 
 
-def rezipped(content: bytes, alter: Callable[[str, bytes], bytes]) -> bytes:
+def rezipped(content: bytes, alter: Callable[[str, bytes], bytes], zeros: tuple[str, int] | None = None) -> bytes:
+    """The zipped file with its parts altered, and with a part of so many megabytes of zeros."""
     packed = BytesIO()
-    with ZipFile(BytesIO(content)) as source, ZipFile(packed, "w") as target:
+    with ZipFile(BytesIO(content)) as source, ZipFile(packed, "w", ZIP_DEFLATED) as target:
         for name in source.namelist():
             target.writestr(name, alter(name, source.read(name)))
+        if zeros:
+            target.writestr(zeros[0], bytes(zeros[1] * 1_000_000))
     return packed.getvalue()
 
 
@@ -227,6 +231,33 @@ def test_what_is_no_file_of_ours_is_a_sentence(
     else:
         assert (code, shown.out) == (2, "")
         assert shown.err.startswith(f"{file}: ") and shown.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("kind", ["xlsx", "aasx"])
+def test_a_zipped_file_with_damaged_bytes_is_a_sentence(kind: str, catalogue: Catalogue) -> None:
+    made = MAKERS[kind](typed_export_of(CASES["example"], catalogue), ENGLISH)
+    draw = random.Random(54)
+    for _ in range(30):
+        damaged = bytearray(made)
+        start = draw.randrange(len(made))
+        damaged[start : start + 40] = draw.randbytes(40)
+        with suppress(UnreadableFileError):
+            assert verify(bytes(damaged), catalogue).file
+
+
+def test_a_file_that_unpacks_to_more_than_its_bounds_is_refused(catalogue: Catalogue) -> None:
+    bomb = rezipped(package(typed_export_of(CASES["example"], catalogue)), lambda name, part: part, ("aasx/bomb", 201))
+    with pytest.raises(UnreadableFileError, match="the package holds more than 200000000 bytes"):
+        verify(bomb, catalogue)
+    book = workbook(typed_export_of(CASES["example"], catalogue), ENGLISH)
+    with pytest.raises(UnreadableFileError, match="the workbook holds more than 200000000 bytes"):
+        verify(rezipped(book, lambda name, part: part, ("xl/bomb", 201)), catalogue)
+    opened = openpyxl.load_workbook(BytesIO(book))
+    opened.worksheets[0].cell(1_000_000, 16_000).value = 1
+    packed = BytesIO()
+    opened.save(packed)
+    with pytest.raises(UnreadableFileError, match="the workbook has more than 2000000 cells"):
+        verify(packed.getvalue(), catalogue)
 
 
 def test_a_missing_file_is_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

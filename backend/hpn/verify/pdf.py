@@ -1,5 +1,6 @@
 """A PDF: its lines of text, the parts attached to it, its links, and what is drawn on its pages."""
 
+import logging
 import re
 from collections.abc import Callable, Iterator, Mapping
 from hashlib import sha256
@@ -13,6 +14,8 @@ from hpn.verify.shown import Shown, UnreadableFileError
 from hpn.words.reader import GROUP
 
 T = TypeVar("T")
+
+logging.getLogger("pypdf").setLevel(logging.CRITICAL)
 
 _BREAKS = re.compile("[\u200b\u00ad]")
 """Places where a word may break, which no reader sees."""

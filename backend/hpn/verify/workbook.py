@@ -8,15 +8,23 @@ import openpyxl
 from openpyxl.worksheet.worksheet import Worksheet
 
 from hpn.files.workbook.workbook import CARRIED
+from hpn.verify.archive import unpacked
 from hpn.verify.shown import Shown, UnreadableFileError
+
+MOST_CELLS = 2_000_000
+"""Cells of all its sheets, blank ones within their frame included."""
 
 
 def _sheets(content: bytes, *, values: bool) -> list[Worksheet]:
+    unpacked(content, form="workbook")
     try:
         book = openpyxl.load_workbook(BytesIO(content), data_only=values)
-        return list(book.worksheets)
+        sheets: list[Worksheet] = list(book.worksheets)
     except Exception as error:  # damaged files make it raise errors of every kind
         raise UnreadableFileError(f"the workbook can’t be read: {error}") from None
+    if sum(sheet.max_row * sheet.max_column for sheet in sheets) > MOST_CELLS:
+        raise UnreadableFileError(f"the workbook has more than {MOST_CELLS} cells")
+    return sheets
 
 
 def parts_of(content: bytes) -> Mapping[str, bytes]:
