@@ -27,7 +27,7 @@ PLOTLY = FRONTEND / "node_modules/plotly.js-basic-dist-min/plotly-basic.min.js"
 DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 """Style sheets of drawings, which the report uses too, and of plots."""
 
-COMMON = ("fonts", "tokens", "app", "form", "tools", "import")
+COMMON = ("fonts", "tokens", "app", "form", "tools", "import", "commands")
 RESULT = ("insight", "tabs", *DRAWN)
 STYLES = {
     "page.css": (*COMMON, "workbench", *RESULT, "verdict", "sheet", "phone", "print"),
@@ -36,6 +36,7 @@ STYLES = {
         "catalogue",
         "saved",
         "selection",
+        "trail",
         *RESULT,
         "machine-axes",
         "machine",
@@ -45,7 +46,9 @@ STYLES = {
         "print",
         "paper",
     ),
-    **{f"{part}.css": (part,) for part in ("motion", "reading", "axis")},
+    **{f"{part}.css": (part,) for part in ("motion", "reading")},
+    "axis.css": ("trail", "axis"),
+    "saved.css": ("selection", "trail", "revisions", "read-only", "paper"),
     "report.css": ("tokens", "app", "tools", "machine-axes", "phone", "print"),
 }
 """Style sheets of the form with its result, of all other pages, of parts that come later and bring their own, and of a
@@ -55,7 +58,7 @@ OF_FORM = ("form", "replacing", "undo", "messages", "requests", "rows", "answer"
 SCRIPTS = (*OF_FORM, "sections", "connection", "insight", "plots", "tools")
 """Modules of the form's page."""
 
-ALONE = ("axis.js", "docs.js", "favicon.svg", "fleet-report.js", "machine.js", "plots.js")
+ALONE = ("axis.js", "copying.js", "docs.js", "favicon.svg", "fleet-report.js", "machine.js", "plots.js")
 """Files that a page asks for by themselves; a fleet’s report holds its script."""
 
 NOTO = FRONTEND / "node_modules/@expo-google-fonts"
@@ -72,8 +75,13 @@ def minified(source: bytes, loader: str, *options: str) -> bytes:
 
 def script(*names: str) -> bytes:
     """htmx, and modules of ours after it in one file."""
+    return HTMX.read_bytes() + b"\n" + bundle(*names)
+
+
+def bundle(*names: str) -> bytes:
+    """Modules of ours in one file."""
     entry = "".join(f'import "./{name}.js";' for name in names).encode()
-    return HTMX.read_bytes() + b"\n" + minified(entry, "js", "--bundle", "--format=iife") + b"\n"
+    return minified(entry, "js", "--bundle", "--format=iife") + b"\n"
 
 
 def style(faces: dict[str, bytes], *names: str) -> bytes:
@@ -98,6 +106,7 @@ def files() -> dict[str, bytes]:
         **{name: (SWAGGER / name).read_bytes() for name in ("swagger-ui.css", "swagger-ui-bundle.js")},
         "page.js": script(*SCRIPTS),
         "gear.js": script("form", "tools"),
+        "saved.js": bundle("shown", "copying"),
         **{name: style(faces, *parts) for name, parts in STYLES.items()},
         **{name: alone(name) for name in ALONE},
     }

@@ -2,8 +2,8 @@
 // sight.
 
 import { contentOf, formOf, isOfForm } from "./form.js";
+import { mark, measure } from "./shown.js";
 
-const wide = matchMedia("(min-width: 1024px)");
 const AHEAD = 400; // pixels below the edge of the window that count as in sight
 
 const isPart = (element) => element.matches("[data-part]");
@@ -11,52 +11,6 @@ const isSeen = (part) => part.checkVisibility() && (part.localName !== "details"
 const isEmpty = (part) => part.childElementCount < 2; // a heading at most
 const addressOf = (part) => document.getElementById(part.id)?.dataset.part;
 const bring = (part) => isEmpty(part) && isSeen(part) && htmx.trigger(part, "unfold");
-
-// --- Which one is shown -----------------------------------------------------------------------------------------------
-
-const sectionOf = (element) => element?.closest(".section")?.id;
-
-function show(id) {
-  document.querySelector("main").dataset.section = id;
-  mark();
-}
-
-function mark() {
-  const { section } = document.querySelector("main").dataset;
-  for (const tab of document.querySelectorAll(".tabs a")) {
-    if (tab.hash === `#${section}`) tab.setAttribute("aria-current", "true");
-    else tab.removeAttribute("aria-current");
-  }
-}
-
-// A link within the page is no edit, and takes no entry of the history. Its target is shown: the section, the fold. The
-// address keeps a section, so that a reload comes back to it.
-document.addEventListener("click", (event) => {
-  const link = event.target.closest('a[href^="#"]');
-  const target = link && document.getElementById(link.hash.slice(1));
-  if (!target || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
-  event.preventDefault();
-  const section = sectionOf(target);
-  if (section) {
-    show(section);
-    history.replaceState(history.state, "", `${location.pathname}${location.search}${section === "overview" ? "" : `#${section}`}`);
-  }
-  target.closest("details")?.setAttribute("open", "");
-  if (wide.matches && target.id === section) scrollTo({ top: 0 });
-  else target.scrollIntoView({ block: target.matches("input, select") ? "center" : "start" });
-  if (!link.matches(".tabs a")) (target.matches("fieldset") ? target.querySelector("input") : target).focus({ preventScroll: true });
-});
-
-const showAddressed = () => show(sectionOf(document.getElementById(location.hash.slice(1))) ?? "overview");
-const toTop = () => wide.matches && location.hash && scrollTo({ top: 0 });
-
-showAddressed();
-addEventListener("load", toTop);
-addEventListener("hashchange", () => {
-  showAddressed();
-  watch();
-  toTop();
-});
 
 // --- What is in sight -------------------------------------------------------------------------------------------------
 
@@ -82,11 +36,8 @@ document.addEventListener("htmx:after:swap", ({ detail: { ctx } }) => {
 
 const watcher = new IntersectionObserver((entries) => entries.forEach(({ target, isIntersecting }) => isIntersecting && bring(target)), { rootMargin: `0px 0px ${AHEAD}px` });
 
-// Heads of tables stick below the title block, which is as high as what it says.
-const measurer = new ResizeObserver(([{ target }]) => document.body.style.setProperty("--head", `${target.offsetHeight}px`));
-
 function watch() {
-  for (const head of document.querySelectorAll(".head")) measurer.observe(head);
+  measure();
   for (const part of document.querySelectorAll("[data-part]")) {
     watcher.observe(part); // once more does no harm
     bring(part);
@@ -99,6 +50,7 @@ document.addEventListener("htmx:after:swap", () => {
   watch();
 });
 watch();
+addEventListener("hashchange", watch);
 
 // A part belongs to the answer that it was requested for: beside a later one it would be wrong, and is requested again.
 const isOutdated = (ctx) => ctx.partOf !== undefined && ctx.partOf !== addressOf(ctx.sourceElement);

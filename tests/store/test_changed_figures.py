@@ -44,7 +44,7 @@ def changed(folder: Path, tmp_path: Path) -> Callable[..., tuple[Json, str]]:
         with TestClient(create_app(settings), cookies={"hpn_language": language}) as client:
             today = client.get(address).json()["today"]
             page = client.get(address.removeprefix("/api/v1")).text
-        return today, page[page.index('id="today"') : page.index('class="saved-overview"')]
+        return today, page[page.index('id="today"') : page.index('id="inputs-heading"')]
 
     return reopened
 

@@ -224,3 +224,80 @@ def test_the_explanations_of_a_saved_selection_have_the_facts_that_bear_on_each_
     facts = re.findall("<dt>Handbook</dt><dd>(.*?)<span", check)
     assert facts
     assert all(fact in page.partition('id="about-maximum_input_speed"')[2] for fact in facts)
+
+
+# --- Revisions --------------------------------------------------------------------------------------------------------
+
+
+def text_of(page: str) -> str:
+    """Text of a page, its white space single."""
+    return " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
+
+
+def frozen(client: TestClient, place: str, label: str, **application: Json) -> None:
+    """Freeze the worked example with other parts as the next revision of a selection."""
+    body = {"application": worked_example(**application), "label": label, "note": f"note of {label}"}
+    assert client.post(f"/api/v1{place}/revisions", json=body).status_code == 201
+
+
+def test_the_verdict_comes_before_the_input_and_the_chain_names_every_revision(client: TestClient) -> None:
+    place = sent(client, title="Turret", rev="A")
+    frozen(client, place, "B")
+
+    page = client.get(place).text
+
+    assert page.index('class="saved-title"') < page.index('id="verdict"') < page.index('id="inputs-heading"')
+    assert "Revision B of 2" in text_of(page) and f'href="{place}?revision=A"' in page
+    assert f'href="{place}/revisions"' in page and "The working copy has changed" not in text_of(page)
+
+
+def test_an_earlier_revision_leads_to_the_latest_and_its_gears_stay_its_own(client: TestClient) -> None:
+    place = sent(client, title="Turret", rev="A")
+    frozen(client, place, "B", requirements={"ratios": [7]})
+
+    page = client.get(f"{place}?revision=A").text
+
+    assert "There is a newer revision." in text_of(page) and "Revision A of 2" in text_of(page)
+    assert f'href="{place}?revision=A&amp;gear=HPN-32A-5"' in page
+    assert f'href="{place}?gear=' not in page
+    for file in ("report.pdf", "report.xlsx"):
+        address = f"/api/v1{place}/{file}?revision=A"
+        assert f'href="{address}"' in page and client.get(address).status_code == 200
+
+
+def test_a_line_leads_to_a_newer_working_copy(client: TestClient) -> None:
+    place = sent(client, title="Turret", rev="A")
+    id = place.rpartition("/")[2]
+    patch = {"application": {"emergency_stop": {"torque_Nm": 100}}}
+    changed = client.patch(
+        f"/api/v1/machines/{id}/axes/1", json=patch, headers={"Content-Type": "application/merge-patch+json"}
+    )
+    assert changed.status_code == 200, changed.text
+
+    page = client.get(place).text
+
+    assert "The working copy has changed since revision A." in text_of(page)
+    assert f'href="/machines/{id}/axes/1"' in page and f'href="{place}/revisions?from=A&amp;to=now"' in page
+
+
+@pytest.mark.parametrize("suffix", ["", "/revisions"])
+def test_what_today_says_is_saved_as_the_next_revision_of_what_was_saved(
+    client: TestClient, supplemented: Supplement, suffix: str
+) -> None:
+    place = sent(client, title="Turret", rev="A")
+    before = client.get(f"/api/v1{place}").json()["result"]
+    assert "Save today’s as" not in client.get(place + suffix).text
+    state_of(client).catalogue = supplemented(ratings=WEAKER)
+
+    page = client.get(place + suffix).text
+    form = re.search(r'<form class="save-today".*?</form>', page, re.DOTALL)
+    assert form is not None and "Save today’s as B" in form[0]
+    fields = {name: html.unescape(text) for name, text in re.findall(r'name="(\w+)"\s+value="([^"]*)"', form[0])}
+    saved = client.post(f"{place}/revisions", data=fields)
+
+    assert saved.status_code == 303, saved.text
+    latest = client.get(f"/api/v1{place}").json()
+    assert latest["label"] == "B" and latest["result"]["selected"] != before["selected"]
+    assert latest["today"]["differences"] == []
+    assert client.get(f"/api/v1{place}?revision=A").json()["result"] == before
+    assert "engine" in latest["revisions"][0]["note"]

@@ -26,6 +26,9 @@ WORDS: Mapping[str, str] = {
     **{code: ranking.choice for code, ranking in RANKINGS.items()},
     "True": N_("yes"),
     "False": N_("no"),
+    "gear_L10": N_("gear L10"),
+    "bearing_L10": N_("bearing L10"),
+    "bearing_L50": N_("bearing L50"),
     **{str(area): text for area, text in AREAS.items()},
 }
 """Values that are a code, in words."""

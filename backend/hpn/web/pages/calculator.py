@@ -1,7 +1,6 @@
 """The page: one address that takes the whole application, and answers with the whole page or with what has changed."""
 
 import secrets
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -13,10 +12,8 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
-from hpn.catalogue.gear import Gear
 from hpn.catalogue.ordering import OrderingCode, ordering_code
-from hpn.engine.candidates import REASONS, Candidate
-from hpn.engine.selection import Selection, judge
+from hpn.engine.selection import judge
 from hpn.engine.tried import tried
 from hpn.explain.drawings import Pictures, default_condition
 from hpn.links.labels import query_of
@@ -33,6 +30,7 @@ from hpn.web.form.given import CYCLE_NAMES, FieldProblem
 from hpn.web.form.linked import LONGEST_LINK, WRITTEN_AT
 from hpn.web.form.offers import beside_fields
 from hpn.web.pages.axis_view import AxisView
+from hpn.web.pages.gear_map import GearMap, map_of
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
 from hpn.web.pages.result import Result
 from hpn.web.pages.templates import environment
@@ -46,30 +44,6 @@ FIGURES = frozenset(("bearing_figure", "sizes_figure"))
 
 PARTS = FIGURES.union(SECTIONS[1:])
 """Parts of the page that an edit brings only where they are in sight, by the header HPN-Parts; others are fetched."""
-
-
-@dataclass(frozen=True)
-class MapCell:
-    """One gear in the map of sizes and ratios; `asked` tells whether the ratio and size wishes include it."""
-
-    gear: Gear
-    candidate: Candidate
-    asked: bool
-
-    @property
-    def level(self) -> str:
-        """Step of the scale: reserve of a gear that passes, else one for failed and one for a gear without ratings."""
-        torque = self.candidate.check("average_torque")
-        if self.candidate.status == "unrated" or (torque and torque.status == "not_rated"):
-            return "unknown"
-        used = self.candidate.utilisation or 0.0
-        reserve = "most" if used <= 0.6 else "more" if used <= 0.85 else "some"
-        return reserve if self.candidate.status == "suitable" else "over"
-
-    @property
-    def unrated(self) -> Sentence:
-        """Sentence on a gear without ratings, whatever its other checks say."""
-        return Sentence(REASONS["unrated"], {"name": f"HPN-{self.gear.size}"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +61,6 @@ class Answer(Result):
     address: str
     whole: str
     order: OrderingCode
-    map: tuple[tuple[int, tuple[MapCell | None, ...]], ...]
     insight: Insight
     own_cycle: str
     form: Form
@@ -107,6 +80,11 @@ class Answer(Result):
         if self.pictures is None or self.application.loads is not None:
             return self.pictures
         return replace(self.pictures, condition=self.condition.query)
+
+    @cached_property
+    def map(self) -> GearMap:
+        """Map of every gear of the catalogue."""
+        return map_of(self.selection, self.insight.everything, self.catalogue)
 
     @property
     def mark(self) -> str:
@@ -227,7 +205,6 @@ def _answer(application: Application, form: Form, catalogue: Catalogue, axis: Ax
         links=link_of,
         order=order,
         form=form,
-        map=_map(selection, everything, catalogue),
         insight=Insight(
             application, selection, everything, everything[gear.designation], form.pins, catalogue, links=link_of
         ),
@@ -246,19 +223,6 @@ def _parted(link: str) -> tuple[list[str], list[str]]:
     for pair in link.removeprefix("/?").split("&"):
         (own if pair.partition("=")[0] in CYCLE_NAMES else beside).append(pair)
     return own, beside
-
-
-def _map(
-    selection: Selection, everything: Mapping[str, Candidate], catalogue: Catalogue
-) -> tuple[tuple[int, tuple[MapCell | None, ...]], ...]:
-    names = {candidate.designation for candidate in selection.candidates}
-    gears = {(gear.ratio, gear.size): gear for gear in catalogue.gears}
-
-    def cell(ratio: int, size: str) -> MapCell | None:
-        gear = gears.get((ratio, size))
-        return MapCell(gear, everything[gear.designation], gear.designation in names) if gear else None
-
-    return tuple((ratio, tuple(cell(ratio, size) for size in catalogue.sizes)) for ratio in catalogue.ratios)
 
 
 def _parts(request: Request, form: Form) -> frozenset[str]:

@@ -23,6 +23,7 @@ from hpn.files.export import DIGITS
 from hpn.links.writer import to_link
 from hpn.web.door.visit import current
 from hpn.web.pages.drive import DriveView
+from hpn.web.pages.gear_map import GearMap, map_of
 from hpn.words.quantities import LISTED
 from hpn.words.reader import Reader
 from hpn.words.wording import Named, Sentence
@@ -110,6 +111,12 @@ class Result:
             return None
         subject = Subject(self.application, self.gear, self.catalogue, self.chosen)
         return Pictures(subject, self.chosen, current())
+
+    @cached_property
+    def map(self) -> GearMap:
+        """Map of the gears that were judged; empty where their catalogue is not kept."""
+        candidates = {candidate.designation: candidate for candidate in self.selection.candidates}
+        return map_of(self.selection, candidates, self.catalogue) if self.catalogue else ()
 
     @property
     def bearing_pictures(self) -> Pictures | None:

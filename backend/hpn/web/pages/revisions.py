@@ -11,11 +11,12 @@ from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
 from hpn.documents.revision import TODAY, RevisionBlock, decode
-from hpn.documents.summary import Summary, summary_of
+from hpn.documents.summary import summary_of
 from hpn.files.export import ExportTitle
 from hpn.files.machine.changes import DifferencesExport
 from hpn.store import Machine, RevisionLine
 from hpn.store.records import DocumentKind
+from hpn.web.columns import frozen_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
@@ -27,7 +28,18 @@ from hpn.web.machines import FEW_AXES, found
 from hpn.web.pages import machine as machine_pages
 from hpn.web.pages.machine_view import MachineView
 from hpn.web.pages.rendering import or_reason, page
-from hpn.web.pages.revisions_view import BLOCK, MOST_LINES, STATES, Compared, next_label, next_revision, pair_of
+from hpn.web.pages.revisions_view import (
+    BLOCK,
+    MOST_LINES,
+    STATES,
+    Compared,
+    gears_shown,
+    is_working_copy,
+    moments_of,
+    next_label,
+    next_revision,
+    pair_of,
+)
 from hpn.web.pages.saved_list import version_of
 from hpn.web.pages.saving import REASON as SELECTION_REASON
 from hpn.web.states import State, catalogues_of, documents_of, state_of, states_of
@@ -59,6 +71,7 @@ async def shown(
         "may_change": machine_pages.may_change(request, machine),
         **next_revision(lines),
         "said": said,
+        "may_save_today": machine_pages.may_change(request, machine) and is_working_copy(machine, lines, pair),
         "states": STATES,
         "engine_version": ENGINE_VERSION,
         "catalogue_version": request.app.state.catalogue.version,
@@ -93,15 +106,19 @@ def _page(
         whole = request.query_params.get("show") == "all"
         compared = Compared(_export(request, machine, pair, states), current(), whole)
         today = _today(request, machine, pair, states[1], compared)
-    counts: dict[int, Summary] = {
-        number: summary_of(decode(state.content), state.catalogue)
-        for number, state in brief.items()
-        if isinstance(state.content, bytes)
-    }
+    frozen = {number: decode(state.content) for number, state in brief.items() if isinstance(state.content, bytes)}
     now = MachineView(machine, request.app.state.catalogue)
-    return page(
-        request, "revisions.html", status, compared=compared, today=today, pair=pair, counts=counts, now=now, **values
-    )
+    shown = {
+        "compared": compared,
+        "today": today,
+        "pair": pair,
+        "counts": {number: summary_of(document, brief[number].catalogue) for number, document in frozen.items()},
+        "gears": gears_shown(frozen, current()),
+        "now_gear": gears_shown({0: frozen_of(machine, machine.items)}, current())[0],
+        "moments": moments_of(pair, values["all_lines"]),
+        "now": now,
+    }
+    return page(request, "revisions.html", status, **shown, **values)
 
 
 def _export(

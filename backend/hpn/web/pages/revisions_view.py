@@ -7,7 +7,7 @@ from string import ascii_uppercase
 from typing import Any, NamedTuple
 
 from hpn.documents.differences import DifferentAxis, DocumentDifferences
-from hpn.documents.revision import NOW, TODAY, FrozenAxis, label_key
+from hpn.documents.revision import NOW, TODAY, Frozen, FrozenAxis, label_key
 from hpn.documents.summary import Summary, gear_of
 from hpn.files.machine.changes import Cell, DifferencesExport, answer_cells, cells_of, effect, input_cells
 from hpn.files.machine.words import bound_of, used
@@ -129,7 +129,11 @@ class Compared:
     @property
     def results(self) -> list[Cell]:
         """Verdicts and figures that differ, of a document with one axis."""
-        return [cell for axis in self.found.axes for cell in answer_cells((*axis.verdicts, *axis.figures), self.reader)]
+        answered = [each for axis in self.found.axes for each in (*axis.verdicts, *axis.figures)]
+        gear = next(((each.value_from, each.value_to) for each in answered if each.field == "designation"), None)
+        # Without an ordering code the selected gear is the gear, which is said once.
+        once = [each for each in answered if each.field != "selected" or (each.value_from, each.value_to) != gear]
+        return answer_cells(once, self.reader)
 
     @property
     def gears(self) -> tuple[str | None, str | None]:
@@ -190,6 +194,29 @@ def pair_of(machine: Machine, lines: Sequence[RevisionLine], wanted: Mapping[str
     older, newer = (lines[0].label, NOW) if is_new or len(lines) == 1 else (lines[1].label, lines[0].label)
     before, after = (wanted.get(name, "")[:20] or label for name, label in (("from", older), ("to", newer)))
     return written(before, lines), written(after, lines)
+
+
+def is_working_copy(machine: Machine, lines: Sequence[RevisionLine], pair: tuple[str, str] | None) -> bool:
+    """True where the state that today is compared with is the working copy, so that the next revision freezes it."""
+    if pair is None or machine.saved is None:
+        return False
+    state = pair[0] if pair[1] == TODAY else pair[1]
+    return state == NOW or (state == lines[0].label and not machine.updated > lines[0].created)
+
+
+def moments_of(pair: tuple[str, str] | None, lines: Sequence[RevisionLine]) -> str:
+    """Days of the revisions that are compared, with their authors."""
+    by_label = {line.label: line for line in lines}
+    shown = [by_label[label] for label in pair or () if label in by_label]
+    days = dict.fromkeys(line.created.strftime("%Y-%m-%d") for line in shown)
+    authors = dict.fromkeys(line.author for line in shown if line.author)
+    return ", ".join([" – ".join(days), *authors])
+
+
+def gears_shown(documents: Mapping[int, Frozen], reader: Reader) -> dict[int, SideShown | None]:
+    """Gear of the first axis of each document, which is the only one of a selection."""
+    firsts = {number: next(iter(document.axes), None) for number, document in documents.items()}
+    return {number: SideShown.of(axis, reader) for number, axis in firsts.items()}
 
 
 def written(label: str, lines: Iterable[RevisionLine]) -> str:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from fastapi import APIRouter
 from starlette.requests import Request
@@ -22,14 +22,16 @@ from hpn.explain.comparison import Row, rows_of
 from hpn.explain.differences import FigureDifference
 from hpn.files.export import DIGITS
 from hpn.files.report.content import qr_code
-from hpn.store import ID, SavedSelection
+from hpn.store import ID, Machine, SavedSelection
 from hpn.web.archive import Reopened, found, url_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.visit import absolute, current
 from hpn.web.form.given import visible
 from hpn.web.pages import calculator
+from hpn.web.pages.machine import may_change
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
+from hpn.web.pages.revisions_view import next_label
 from hpn.web.pages.saving import REASON
 from hpn.words.wording import N_, Sentence
 
@@ -37,11 +39,15 @@ DIFFERENCES_ON_PAGE, MOST_ROWS = 100, 100
 """Differences, and rows of a table of inputs, that the page shows."""
 
 EXPORTS = (
-    ("report.pdf", N_("PDF report"), "report"),
-    ("report.xlsx", N_("Workbook"), "serve"),
-    ("submodel.aasx", N_("Asset Administration Shell"), "aas"),
+    ("/report.pdf", N_("PDF"), "", "report"),
+    ("/report.xlsx", N_("Workbook"), "XLSX", "serve"),
+    ("/submodel.aasx", N_("Asset administration shell"), "AASX", "aas"),
+    ("", N_("Application and result"), "JSON", "serve"),
 )
-"""Files of a saved selection: name, title, and the extra that makes it."""
+"""Files of a saved selection: end of its address, title, format, and the extra that makes it."""
+
+MOST_REVISIONS = 20
+"""Revisions that the page itself names; their own page has more."""
 
 
 @or_reason(REASON)
@@ -50,11 +56,32 @@ async def show_selection(request: Request) -> Response:
     id = request.path_params["id"]
     if (seen := visible(id)) != id and ID.fullmatch(seen):
         return RedirectResponse(f"/selections/{seen}?{request.url.query}".removesuffix("?"), 308)
-    return await found(request, id, partial(_shown, request), request.query_params.get("revision"))
+    machine: Machine | None = await request.app.state.store.find_machine(id, "selection")
+    label = request.query_params.get("revision")
+    return await found(request, id, partial(_shown, request, machine), label)
 
 
-def _shown(request: Request, reopened: Reopened) -> Response:
+class WorkingCopy(NamedTuple):
+    """Working copy of a selection: its page, and whether it has changed since the latest revision."""
+
+    place: str
+    is_newer: bool
+
+    @classmethod
+    def of(cls, machine: Machine, saved: SavedSelection) -> "WorkingCopy":
+        """That of a document with one axis."""
+        (axis,) = machine.items
+        return cls(f"/machines/{machine.id}/axes/{axis.number}", axis.updated > saved.revisions[0].created)
+
+
+def _shown(request: Request, machine: Machine | None, reopened: Reopened) -> Response:
     values = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
+    if machine is not None:
+        values |= {
+            "working": WorkingCopy.of(machine, reopened.saved),
+            "may_change": may_change(request, machine),
+            "next": next_label(reopened.saved.revisions),
+        }
     address = absolute(request, url_of(reopened.saved.id))
     return page(request, "selection.html", address=address, qr_code=qr_code(address), **values)
 
@@ -94,6 +121,7 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         "filed": replace(reader, digits=DIGITS),
         "most_rows": MOST_ROWS,
         "exports": EXPORTS,
+        "most_revisions": MOST_REVISIONS,
         "longest_link": MAXIMUM_QUERY_BYTES,
     }
 
@@ -106,6 +134,7 @@ def result_of(
     designation: str = "",
 ) -> Result:
     """Saved result as the templates read it, with the gear that is asked for or that its page shows first."""
+    earlier = "" if saved.label == saved.revisions[0].label else f"revision={saved.label}&"
     chosen = selection.candidate(designation or saved.designation or "") or selection.foremost
     return Result(
         selection=selection,
@@ -113,7 +142,7 @@ def result_of(
         chosen=chosen,
         asked=chosen is not selection.foremost,
         catalogue=then,
-        choosing=f"{url_of(saved.id)}?gear=",
+        choosing=f"{url_of(saved.id)}?{earlier}gear=",
     )
 
 
