@@ -56,7 +56,7 @@ def sentences_of(error: ValidationError | InputError) -> list[tuple[Location, Se
         return [(location, sentence, NOT_AVAILABLE) for location, sentence in error.sentences]
     if error.error_count() > LISTED_ERRORS:
         return [((), Sentence(N_("has {count} errors"), {"count": error.error_count()}), "invalid")]
-    return _told(error.errors(include_url=False, include_input=False))
+    return _sentences(error.errors(include_url=False, include_input=False))
 
 
 def unreadable(error: ValidationError) -> str | None:
@@ -72,10 +72,10 @@ def pointer(location: Location) -> str:
 
 def plain_faults(entries: Sequence[ErrorDetails]) -> list[Fault]:
     """Faults for pydantic's entries."""
-    return [Fault(location, sentence.text, code) for location, sentence, code in _told(entries)]
+    return [Fault(location, sentence.text, code) for location, sentence, code in _sentences(entries)]
 
 
-def _told(entries: Sequence[ErrorDetails]) -> list[tuple[Location, Sentence, str]]:
+def _sentences(entries: Sequence[ErrorDetails]) -> list[tuple[Location, Sentence, str]]:
     # A list whose items are wrong is also reported as too short; the items say it better.
     items = {entry["loc"][:end] for entry in entries for end in range(len(entry["loc"]))}
     singles = [entry for entry in entries if entry["type"] != "too_short" or entry["loc"] not in items]

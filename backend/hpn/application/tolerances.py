@@ -82,7 +82,7 @@ class Tolerance(Model):
         return value - (minus.of(value) if minus else 0.0), value + (plus.of(value) if plus else 0.0)
 
 
-def _given(value: Any) -> Any:
+def _without_nulls(value: Any) -> Any:
     """Tolerances without nulls, which count as not given."""
     if not isinstance(value, dict):
         return value
@@ -94,7 +94,7 @@ def _given(value: Any) -> Any:
 
 Path = Annotated[str, Field(max_length=LONGEST_PATH)]
 Tolerances = Annotated[
-    dict[Path, Tolerance], Field(json_schema_extra={"maxProperties": MOST_TOLERANCES}), BeforeValidator(_given)
+    dict[Path, Tolerance], Field(json_schema_extra={"maxProperties": MOST_TOLERANCES}), BeforeValidator(_without_nulls)
 ]
 
 # --- Intervals --------------------------------------------------------------------------------------------------------

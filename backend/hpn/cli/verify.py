@@ -68,10 +68,10 @@ def _lines(verdict: Verdict, catalogue: str) -> Iterator[str]:
         yield f"can’t be checked: {text}"
 
 
-def _version(name: str, shown: str | None, here: str) -> str:
-    if shown is None:
+def _version(name: str, printed: str | None, here: str) -> str:
+    if printed is None:
         return f"{name} not said, here {here}"
-    return f"{name} {shown}" + (", as here" if shown == here else f", here {here}")
+    return f"{name} {printed}" + (", as here" if printed == here else f", here {here}")
 
 
 REASONS = {

@@ -74,7 +74,9 @@ def _lacking(error: ValidationError, inherited: Collection[str]) -> list[str]:
 
 def merged(own: Mapping[str, Any], common: Mapping[str, Any], left_out: Collection[str]) -> tuple[Json, frozenset[str]]:
     """An axis's own values with those common ones that hold for it, and the paths of these."""
-    whole = {name: _given(value) if name in PARTS else value for name, value in own.items() if value is not None}
+    whole = {
+        name: _without_nulls(value) if name in PARTS else value for name, value in own.items() if value is not None
+    }
     held = {path: value for path, value in flat(common) if path not in left_out and _holds(path, whole, own)}
     for path, value in held.items():
         part, _, name = path.partition(".")
@@ -85,7 +87,7 @@ def merged(own: Mapping[str, Any], common: Mapping[str, Any], left_out: Collecti
     return whole, frozenset(held)
 
 
-def _given(part: Any) -> Any:
+def _without_nulls(part: Any) -> Any:
     """A part of an application without its nulls."""
     return {name: value for name, value in part.items() if value is not None} if isinstance(part, Mapping) else part
 

@@ -93,7 +93,7 @@ class Box:
         return {path: place for path, place in paths.items() if path in self.duty.asked.numbers}
 
     @cached_property
-    def _given(self) -> Mapping[str, NDArray[np.bool_]]:
+    def _own(self) -> Mapping[str, NDArray[np.bool_]]:
         """True for phases in which a figure that follows another by default is given, shape (phases,)."""
         phases = self.application.duty_cycle.load_phases
         names = ("peak_torque_Nm", "rms_torque_Nm", "least_torque_Nm", "peak_speed_rpm")
@@ -114,7 +114,7 @@ class Box:
         if any(name in columns for name in WITH_TORQUE):
             T, peak, rms = (series[name] for name in WITH_TORQUE[:3])
             by_default = least_torque(torque_Nm=T, peak_torque_Nm=peak, rms_torque_Nm=rms)
-            series["least_torque_Nm"] = np.where(self._given["least_torque_Nm"], series["least_torque_Nm"], by_default)
+            series["least_torque_Nm"] = np.where(self._own["least_torque_Nm"], series["least_torque_Nm"], by_default)
         return Duty(Phases(**series), self._asked_at(points), *self._motions(count))
 
     def _move_torques(self, series: Mapping[str, FloatArray], points: FloatArray, column: PhaseIntervals) -> None:
@@ -124,7 +124,7 @@ class Box:
         reaches, factor = (self.low[of] <= 0) & (self.high[of] >= 0), np.abs(x / value)
         series["torque_Nm"][:, 0, phases], series["torque_sign"][:, 0, phases] = np.abs(x), np.sign(x)
         for name in WITH_TORQUE[1:]:
-            is_given, own = self._given[name][phases], series[name][:, 0, phases]
+            is_given, own = self._own[name][phases], series[name][:, 0, phases]
             grown = np.zeros(1) if name == "least_torque_Nm" else own + np.abs(x - value)
             moved = np.where(reaches, grown, own * factor)
             series[name][:, 0, phases] = np.where(is_given, moved, np.abs(x))
@@ -134,7 +134,7 @@ class Box:
         of, phases = column
         x = points[:, of]
         peak = series["peak_speed_rpm"][:, 0, phases] * np.abs(x / self.value[of])
-        is_given = self._given["peak_speed_rpm"][phases]
+        is_given = self._own["peak_speed_rpm"][phases]
         series["speed_rpm"][:, 0, phases] = np.abs(x)
         series["peak_speed_rpm"][:, 0, phases] = np.where(is_given, peak, np.abs(x))
 
@@ -167,7 +167,7 @@ class Box:
                 followers = {*self._moved_by(str(place[2]))} - {place[2], "torque_sign"}
                 for name in followers:
                     own = (*place[:2], name) in values or any(one.place == (*place[:2], name) for one in self.intervals)
-                    if not own and self._given[name][int(place[1])]:
+                    if not own and self._own[name][int(place[1])]:
                         values[(*place[:2], name)] = float(getattr(typed, name)[0, 0, int(place[1])])
         return moved(self.application, values)
 

@@ -219,7 +219,7 @@ def judged_by(evaluation: Evaluation, used: FloatArray, bound: FloatArray) -> Ev
 def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     """Evaluation of every check that an application of a duty asks for, on every gear."""
     case = Case(duty, gears.columns, Figures(duty, gears, catalogue))
-    checks, mask = _asked(case)
+    checks, mask = _checks_of(case)
     used = np.empty((*mask.shape[:2], len(gears.rows)))
     bound = np.ones((*mask.shape[:2], 1))
     loads = _load_checks(checks)
@@ -237,7 +237,7 @@ def _load_checks(checks: Iterable[Check]) -> int:
     return sum(check.group == "load" for check in checks)
 
 
-def _asked(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
+def _checks_of(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
     """Checks that some application asks for, and a mask of those that do, shape (C, N, 1)."""
     always = np.zeros((len(case.duty.average_torque_Nm), 1))
     inputs = [case.asked[check.asked] if check.asked else always for check in CHECKS]

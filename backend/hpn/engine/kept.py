@@ -46,7 +46,7 @@ def decode(content: bytes) -> Selection:
         raise UnreadableReplyError(f"the saved result can’t be read: {error}") from None
     if not selection.candidates:
         raise UnreadableReplyError("the saved result has no candidate")
-    candidates = map(_kept, selection.candidates, said.candidates)
+    candidates = map(_with_unknown, selection.candidates, said.candidates)
     definitions = selection.check_definitions | _lacking(selection)
     return structs.replace(selection, candidates=tuple(candidates), check_definitions=definitions)
 
@@ -57,7 +57,7 @@ def fields_of(content: bytes) -> Mapping[str, Any]:
     return fields
 
 
-def _kept(candidate: Candidate, said: Mapping[str, Raw]) -> Candidate:
+def _with_unknown(candidate: Candidate, said: Mapping[str, Raw]) -> Candidate:
     reserve = _reserve(said["reserve"]) if "reserve" in said else {}
     unknown = _FIGURES - said.keys() | {f"reserve.{name}" for name in _RESERVES - reserve.keys()}
     return KeptCandidate(**structs.asdict(candidate), unknown=unknown) if unknown else candidate

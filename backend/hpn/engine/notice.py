@@ -244,11 +244,13 @@ def _template_of(code: str, values: Mapping[str, Mixed]) -> str:
 
 
 def _sentence(template: str, values: Mapping[str, Mixed]) -> Sentence:
-    texts = {name: value if isinstance(value, str) else Quantity(value, *_told(name)) for name, value in values.items()}
+    texts = {
+        name: value if isinstance(value, str) else Quantity(value, *_unit_of(name)) for name, value in values.items()
+    }
     return Sentence(template, texts, TRANSLATED)
 
 
-def _told(name: str) -> tuple[str, int, Rounding]:
+def _unit_of(name: str) -> tuple[str, int, Rounding]:
     """Unit, digits and rounding of a value; a limit to be set is rounded down, what is needed at least up."""
     return suffix_of(name), DIGITS[suffix_of(name)], _ROUNDING.get(name, "nearest")
 

@@ -61,7 +61,7 @@ class ReplyChange:
         """Both values; two texts that read alike today as each was written."""
         if self._reads_alike:
             return Row(tuple(self._line(Sentence("{text}", {"text": text})) for text in self._values))
-        return self._read
+        return self._as_read
 
     @property
     def numbers(self) -> tuple[str, str]:
@@ -88,12 +88,12 @@ class ReplyChange:
         return self.difference.saved, self.difference.today
 
     @cached_property
-    def _read(self) -> Row:
+    def _as_read(self) -> Row:
         return Row(tuple(map(self._line_of, self._values, self.accounts)))
 
     @cached_property
     def _reads_alike(self) -> bool:
-        one, other = self._read.numbers(self.reader)
+        one, other = self._as_read.numbers(self.reader)
         return one == other and all(isinstance(value, str) for value in self._values)
 
     # --- Lines --------------------------------------------------------------------------------------------------------

@@ -231,7 +231,7 @@ class CsvTable(AxisTable):
             axes = pa.array([self._axis_of(row.text, row.actual_columns) for row in broken], pa.string())
             filled = pc.replace_with_mask(placed[AXIS].combine_chunks(), pa.array(is_broken), axes)
             placed = placed.set_column(placed.column_names.index(AXIS), AXIS, filled)
-        return RowBatch(placed, [CellFault(row.number - 1, AXIS, _told(row), "row_length") for row in broken])
+        return RowBatch(placed, [CellFault(row.number - 1, AXIS, _reason_of(row), "row_length") for row in broken])
 
     def _axis_of(self, line: str, cells: int) -> str | None:
         """Axis of a broken row, where its cell has an end, and the header names it."""
@@ -262,7 +262,7 @@ class GzipCsvTable(CsvTable):
             raise FleetError(f"{self.path}: can’t be read as gzip: {error}") from None
 
 
-def _told(row: pacsv.InvalidRow) -> Sentence:
+def _reason_of(row: pacsv.InvalidRow) -> Sentence:
     """Reason of a row with too few or too many cells."""
     counts = {"found": str(row.actual_columns), "expected": str(row.expected_columns)}
     return Sentence(WRONG_LENGTH, {**counts, "row": cut(row.text)})

@@ -73,7 +73,7 @@ def listing_of(order: Order, answers: Iterator[pa.Table], catalogue: Catalogue) 
 
     summary = summary_of(noted())
     first = pa.concat_tables(pieces)
-    open_axes = _asked(order, first.filter(pc.is_valid(first["suitable"]))[AXIS])
+    open_axes = _open_axes(order, first.filter(pc.is_valid(first["suitable"]))[AXIS])
     return Listing(summary, with_nearest(first, open_axes, catalogue), open_axes)
 
 
@@ -87,7 +87,7 @@ def with_nearest(answers: pa.Table, open_axes: pa.Table, catalogue: Catalogue) -
     return answers
 
 
-def _asked(order: Order, names: pa.ChunkedArray) -> pa.Table:
+def _open_axes(order: Order, names: pa.ChunkedArray) -> pa.Table:
     """Axes of these names in list form, their names as text."""
     pieces, count, wanted = list[pa.Table](), 0, names.combine_chunks()
     for axes in axes_of(open_axes(order.axes, order.ignored)):

@@ -160,16 +160,16 @@ def _wrong(cell: Any, column: InputColumn) -> tuple[Sentence, str] | None:
     if cell is None or _is(cell, wanted):
         return None
     if not column.is_list:
-        return _told(template, cell), code
+        return _sentence_of(template, cell), code
     if not isinstance(cell, list | tuple):
         return no_list(column)
     place, item = next(each for each in enumerate(cell, 1) if each[1] is not None and not _is(each[1], kind))
-    sentence = _told(template, item)
+    sentence = _sentence_of(template, item)
     of_item = Sentence(OF_ITEM, {"number": str(place), "reason": sentence})
     return (of_phase(place, sentence) if column.name in COLUMNS.phases else of_item), code
 
 
-def _told(template: str, cell: Any) -> Sentence:
+def _sentence_of(template: str, cell: Any) -> Sentence:
     return Sentence(template, {"found": cut(msgspec.json.encode(cell).decode(errors="replace"))})
 
 

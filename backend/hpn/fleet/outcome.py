@@ -215,11 +215,11 @@ def _all_faults(batch: RowBatch, is_sound: BoolArray, catalogue: Catalogue) -> l
     for fault in batch.faults:
         known[fault.row].append(fault)
     for row, cells in cells_of(batch.rows, [row for row, faults in known.items() if not faults]):
-        known[row] = _found(row, cells, catalogue)
+        known[row] = _faults_of(row, cells, catalogue)
     return [fault for faults in known.values() for fault in faults[:MOST_FAULTS]]
 
 
-def _found(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[CellFault]:
+def _faults_of(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[CellFault]:
     """Faults of the lists, or else those that the models or the selection find."""
     faults = [] if cells.get(AXIS) is not None else [CellFault(row, AXIS, Sentence(REQUIRED), "missing")]
     if all_faults := faults + [CellFault(row, *fault) for fault in faults_of_lists(cells)]:

@@ -26,12 +26,12 @@ class _WrongError(ValueError):
         self.told = sentence
 
 
-def worked_out(text: str, read: Callable[[str], str | Sentence | None]) -> str | Sentence:
+def worked_out(text: str, number_of: Callable[[str], str | Sentence | None]) -> str | Sentence:
     """Number in plain notation that `=…` comes to, or what is wrong with it; `read` reads a number in it."""
     if len(text) > LONGEST:
         return Sentence(_WRONG)
     try:
-        value = _Sum(text.removeprefix("=").translate(_MARKS), read).value()
+        value = _Sum(text.removeprefix("=").translate(_MARKS), number_of).value()
         number = float(value)
     except ZeroDivisionError:
         return Sentence(N_("divides by zero"))
@@ -47,8 +47,8 @@ def worked_out(text: str, read: Callable[[str], str | Sentence | None]) -> str |
 class _Sum:
     """A sum of products of signed numbers and brackets, read from the left."""
 
-    def __init__(self, text: str, read: Callable[[str], str | Sentence | None]) -> None:
-        self.rest, self.read, self.number, self.mark = text, read, "", ""
+    def __init__(self, text: str, number_of: Callable[[str], str | Sentence | None]) -> None:
+        self.rest, self.read, self.number, self.mark = text, number_of, "", ""
         self._step()
 
     def value(self) -> Fraction:

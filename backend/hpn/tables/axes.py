@@ -298,10 +298,10 @@ class _AxesInterpreter(Interpreter):
         if column.held is None or column.held.kind != "by_size":
             return None
         marks: Sequence[Decimal] = DECIMALS if not cell.lstrip().startswith("{") else (".",)
-        readings = [reading for mark in marks if (reading := numbers_by_size(cell, partial(self._read, column, mark)))]
+        readings = [reading for mark in marks if (reading := numbers_by_size(cell, partial(self._float, column, mark)))]
         return readings[0] if readings and readings[0] == readings[-1] else None  # no mark is guessed
 
-    def _read(self, column: Column, decimal: Decimal, number: str) -> float | None:
+    def _float(self, column: Column, decimal: Decimal, number: str) -> float | None:
         return self._value(entry(number, decimal, any_unit=True), column)
 
     def _one(self, numbers: dict[str, CellNumber | None], column: Column) -> Any:

@@ -135,14 +135,16 @@ class Interpreter:
         hidden = len(rows) - FIRST_ROWS - LAST_ROWS
         if hidden > 1:
             rows = rows[:FIRST_ROWS] + rows[-LAST_ROWS:]
-        preview = [ShownRow(number, tuple(self._shown(row[c.place], c) for c in self.columns)) for number, row in rows]
+        preview = [
+            ShownRow(number, tuple(self._preview(row[c.place], c) for c in self.columns)) for number, row in rows
+        ]
         if hidden > 1:
             preview[FIRST_ROWS] = preview[FIRST_ROWS]._replace(hidden=hidden)
         for note in skipped_among((*self.body.grid.notes, *self.notes)):
             preview.append(ShownRow(int(str(note.values["row"])), skipped=str(note.values["text"])))
         return tuple(sorted(preview, key=lambda row: row.number))
 
-    def _shown(self, cell: str, column: Column) -> PreviewCell:
+    def _preview(self, cell: str, column: Column) -> PreviewCell:
         text = str(cell[:LONGEST_CELL])
         if not column.is_number or is_blank(cell):
             return PreviewCell(text, kind="text" if column.held else "unread")

@@ -89,7 +89,7 @@ class Notation:
         if isinstance(plain, Sentence):
             return Entry(f"{text}?", text, plain)
         if plain is None:
-            return Entry(self._asked(text), text) if self._asked(text) != text else text
+            return Entry(self._with_comma(text), text) if self._with_comma(text) != text else text
         if measure.same:
             return Entry(plain, text) if self.reader.marker or plain != text.strip() else text
         own = measure is self.reader.measure(unit)
@@ -112,17 +112,17 @@ class Notation:
             return None, own
         plain = read_decimal(number, decimal)
         if plain is None:
-            return _advice(self._asked(number), spelled, mostly_whole=unit == "h"), own
+            return _advice(self._with_comma(number), spelled, mostly_whole=unit == "h"), own
         code = unit_code(spelled, unit)
         return (code, own) if isinstance(code, Sentence) else (plain, measures.entered(unit, code))
 
     def _in_sum(self, number: str) -> str | Sentence | None:
         """Number of a sum in plain notation, or advice in the reader's: it takes the place of a part of the text."""
         plain = read_decimal(number, self.decimal)
-        advice = None if plain else _advice(self._asked(number), whole=False)
+        advice = None if plain else _advice(self._with_comma(number), whole=False)
         return advice.marked(self.reader.decimal) if advice else plain
 
-    def _asked(self, text: str) -> str:
+    def _with_comma(self, text: str) -> str:
         """A text as a link would have it, in which a comma is asked about and a point is not."""
         return text.replace(".", ",") if self.decimal == "," and _ASKED[","].fullmatch(_tidy(text)) else text
 

@@ -93,7 +93,7 @@ def sheets_of(content: bytes) -> Sheets:
     unreadable = RefusedError(N_("the workbook can’t be read: save it as XLSX or CSV"))
     try:
         _require_bounded(content)
-        sheets = _read(content)
+        sheets = _sheets_in(content)
     except (RefusedError, MemoryError):
         raise
     except Exception:  # whatever the library meets in a broken file
@@ -127,7 +127,7 @@ def _too_many(what: str) -> RefusedError:
     return RefusedError(template, what=Sentence(what))
 
 
-def _read(content: bytes) -> Sheets:
+def _sheets_in(content: bytes) -> Sheets:
     import openpyxl  # takes a tenth of a second, which only workbooks need
 
     from hpn.tables.worksheets import Worksheet

@@ -27,9 +27,9 @@ async def state_of(request: Request, machine: Machine, label: str) -> State:
     if label_key(label) == TODAY:
         return State(None, today_s)
     if label_key(label) == NOW:
-        return State(machine, await _kept(request, machine.catalogue_version))
+        return State(machine, await _catalogue_of(request, machine.catalogue_version))
     line, frozen = await revision(request, machine.id, label)
-    return State(frozen, await _kept(request, line.catalogue_version), line)
+    return State(frozen, await _catalogue_of(request, line.catalogue_version), line)
 
 
 async def states_of(request: Request, machine: Machine, before: str, after: str) -> tuple[State, State]:
@@ -40,7 +40,7 @@ async def states_of(request: Request, machine: Machine, before: str, after: str)
     return await state_of(request, machine, before), await state_of(request, machine, after)
 
 
-async def _kept(request: Request, version: str) -> Catalogue | None:
+async def _catalogue_of(request: Request, version: str) -> Catalogue | None:
     """Catalogue of a version; None where it is not kept."""
     catalogue: Catalogue = request.app.state.catalogue
     if version == catalogue.version:

@@ -127,12 +127,12 @@ def _verdicts(axes: Sequence[SavedAxis], common: str, catalogue: Catalogue) -> l
     values = orjson.loads(common)
     fresh = answers([AxisQuestion(resolved(axis, values), axis.ordering_code) for axis in axes], catalogue)
     return [
-        AxisVerdict(axis, _verdict(answer, axis.ordering_code) != _kept(axis.answer, axis.ordering_code))
+        AxisVerdict(axis, _verdict(answer, axis.ordering_code) != _verdict_of(axis.answer, axis.ordering_code))
         for axis, answer in zip(axes, fresh, strict=True)
     ]
 
 
-def _kept(answer: Any, ordering_code: str | None) -> tuple[str, str | None]:
+def _verdict_of(answer: Any, ordering_code: str | None) -> tuple[str, str | None]:
     return answer["status"], answer["selected" if ordering_code is None else "designation"]
 
 

@@ -125,10 +125,10 @@ class PhaseSum(Expression):
     def __len__(self) -> int:
         return len(self.quantities[0].values)
 
-    def values(self, of: "Formula", shown: Callable[[FloatArray, str], FloatArray] | None = None) -> FloatArray:
+    def values(self, of: "Formula", scale: Callable[[FloatArray, str], FloatArray] | None = None) -> FloatArray:
         """The general term or a factor of it in every phase, shape (phases,); `shown` gives quantities other units."""
         values = {
-            each.symbol.of_phase("j"): shown(each.values, each.unit) if shown else each.values
+            each.symbol.of_phase("j"): scale(each.values, each.unit) if scale else each.values
             for each in self.quantities
         }
         return np.broadcast_to(values_of(of, values), len(self))

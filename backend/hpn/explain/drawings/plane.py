@@ -315,7 +315,7 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
         most = max(places, key=lambda k: used[k])
         kind = "load governing" if set(governing) & set(places) else "load"
         label = disc_label(cycle.rows(places)) if order < MOST_NUMBERS else ""
-        text = reader.told(_told(cycle, most, places)) if label else ""
+        text = reader.told(_sentence_of(cycle, most, places)) if label else ""
         marks.append(Mark(kind, label, place, text, used.item(most), beyond_limit(used.item(most), u), places[:100]))
     if not cycle.curves:
         means = set(zip(cycle.speed_rpm.tolist(), cycle.torque_Nm.tolist(), strict=True)) - set(together)
@@ -323,7 +323,7 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
     return marks
 
 
-def _told(cycle: _Cycle, k: int, places: Sequence[int]) -> Sentence:
+def _sentence_of(cycle: _Cycle, k: int, places: Sequence[int]) -> Sentence:
     rows, (k_row,) = cycle.rows(places), cycle.rows([k])
     values: dict[str, Value] = {
         "phases": phase_numbers(rows) if len(rows) > 1 else numbered(k_row, cycle.names[k]),

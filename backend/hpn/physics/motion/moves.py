@@ -199,7 +199,7 @@ class Move(Model):
 
     def _timing_of(self, shape: Shape) -> Timing | None:
         """Ramps and run with some shape of ramps; None where these leave too little time."""
-        T, speed, names = self.time_s, getattr(self, self.SPEED), self._given
+        T, speed, names = self.time_s, getattr(self, self.SPEED), self._durations
         D, V = abs(self.way), None if speed is None else speed * self.SPEED_UNIT
         if self.profile == "triangular":
             if len(names) != 1:
@@ -223,7 +223,7 @@ class Move(Model):
         return ("acceleration_time_s", self.ACCELERATION), ("deceleration_time_s", self.DECELERATION)
 
     @property
-    def _given(self) -> list[str]:
+    def _durations(self) -> list[str]:
         """Fields that are given of those that say how long the move takes."""
         names = ("time_s", self.SPEED, *(name for fields in self._ramp_fields for name in reversed(fields)))
         return [name for name in names if getattr(self, name) is not None]

@@ -20,14 +20,14 @@ from hpn.web.todays import versions_of
 Since = Annotated[datetime | None, Field(description="Only those of this moment or later.")]
 
 
-def _given(reference: str | None) -> str:
+def _reference(reference: str | None) -> str:
     """A reference to search for. Of an empty variable of a script, every document would come."""
     if not reference:
         raise PydanticCustomError("empty", "must not be empty; leave it out to list every document")
     return reference
 
 
-Reference = Annotated[Line, AfterValidator(_given), Field(json_schema_extra={"minLength": 1})]
+Reference = Annotated[Line, AfterValidator(_reference), Field(json_schema_extra={"minLength": 1})]
 
 
 class ListQuery(BaseModel):

@@ -199,8 +199,8 @@ async def _before(request: Request, machine: Machine, state: State) -> tuple[str
     """Label and content of the revision before a state; None for the first."""
     lines = await request.app.state.store.revisions(machine.id)
     older = [line for line in lines if state.line is None or line.number < state.line.number]
-    kept = await request.app.state.store.revision(machine.id, older[0].label) if older else None
-    return None if kept is None else (older[0].label, kept[1])
+    latest = await request.app.state.store.revision(machine.id, older[0].label) if older else None
+    return None if latest is None else (older[0].label, latest[1])
 
 
 def _made(request: Request, machine: Machine, state: State, before: tuple[str, bytes] | None) -> MachineExport:

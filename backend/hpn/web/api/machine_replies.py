@@ -168,75 +168,75 @@ def moment(time: datetime) -> str:
     return time.isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
-def line(found: DocumentLine, kind: type[L] = LineReply, **more: Any) -> L:  # type: ignore[assignment]
+def line(record: DocumentLine, kind: type[L] = LineReply, **more: Any) -> L:  # type: ignore[assignment]
     """A line of the list."""
     same = ("id", "kind", "title", "reference", "author", "note", "revision")
     return kind(
-        **{name: getattr(found, name) for name in same},
-        url=f"/{found.kind}s/{found.id}",
-        created=moment(found.created),
-        updated=moment(found.updated),
-        saved=None if found.saved is None else moment(found.saved),
-        counts=CountsReply(found.axes, found.suitable, found.unsuitable, found.open),
-        utilisation=found.utilisation,
+        **{name: getattr(record, name) for name in same},
+        url=f"/{record.kind}s/{record.id}",
+        created=moment(record.created),
+        updated=moment(record.updated),
+        saved=None if record.saved is None else moment(record.saved),
+        counts=CountsReply(record.axes, record.suitable, record.unsuitable, record.open),
+        utilisation=record.utilisation,
         **more,
     )
 
 
-def listed(found: DocumentLine, key: str) -> ListedReply:
+def listed(record: DocumentLine, key: str) -> ListedReply:
     """A line of the list, with what it gets by the versions of a key, if that is known."""
     today = None
-    if found.today_of == key and found.today_changed is not None:
-        today = MachineToday(found.today_changed, msgspec.json.decode(found.today_axes or "[]"))
-    return line(found, ListedReply, today=today)
+    if record.today_of == key and record.today_changed is not None:
+        today = MachineToday(record.today_changed, msgspec.json.decode(record.today_axes or "[]"))
+    return line(record, ListedReply, today=today)
 
 
-def machine(found: Machine) -> LineReply:
+def machine(saved: Machine) -> LineReply:
     """A document with its axes."""
-    common = common_of(found)
-    axes = tuple(axis(each, common) for each in found.items)
-    return line(found, MachineReply, common=common, order=found.order, axes=axes)
+    common = common_of(saved)
+    axes = tuple(axis(each, common) for each in saved.items)
+    return line(saved, MachineReply, common=common, order=saved.order, axes=axes)
 
 
-def parts(found: Machine, names: Collection[str], of_axes: Collection[str]) -> dict[str, Any]:
+def parts(saved: Machine, names: Collection[str], of_axes: Collection[str]) -> dict[str, Any]:
     """Some fields of a document, and of its axes."""
-    common = common_of(found)
-    values = structs.asdict(line(found)) | {"common": common, "order": found.order}
+    common = common_of(saved)
+    values = structs.asdict(line(saved)) | {"common": common, "order": saved.order}
     chosen: dict[str, Any] = {name: value for name, value in values.items() if name in names}
     if of_axes:
-        chosen["axes"] = [{name: PARTS[name](each, common) for name in of_axes} for each in found.items]
+        chosen["axes"] = [{name: PARTS[name](each, common) for name in of_axes} for each in saved.items]
     return chosen
 
 
 def _same(name: str) -> Callable[[SavedAxis, Mapping[str, Any]], Any]:
-    return lambda found, _: getattr(found, name)
+    return lambda each, _: getattr(each, name)
 
 
 PARTS: Mapping[str, Callable[[SavedAxis, Mapping[str, Any]], Any]] = {
     **{name: _same(name) for name in ("number", "name", "quantity", "note", "ordering_code")},
-    "without": lambda found, _: without_of(found),
-    "application": lambda found, _: _raw(found.application),
-    "resolved": lambda found, common: _raw(whole_of(found, common)),
-    "answer": lambda found, _: answer(answer_in(found.answer)),
-    "updated": lambda found, _: moment(found.updated),
+    "without": lambda each, _: without_of(each),
+    "application": lambda each, _: _raw(each.application),
+    "resolved": lambda each, common: _raw(whole_of(each, common)),
+    "answer": lambda each, _: answer(answer_in(each.answer)),
+    "updated": lambda each, _: moment(each.updated),
     "updated_by": _same("updated_by"),
 }
 """Fields of an axis, each as it is made."""
 
 
-def axis(found: SavedAxis, common: Mapping[str, Any]) -> AxisReply:
+def axis(saved: SavedAxis, common: Mapping[str, Any]) -> AxisReply:
     """An axis with its application and its answer."""
-    return AxisReply(**{name: part(found, common) for name, part in PARTS.items()})
+    return AxisReply(**{name: part(saved, common) for name, part in PARTS.items()})
 
 
 def _raw(content: bytes) -> Any:
     return Raw(content)
 
 
-def answer(found: AxisAnswer) -> AnswerReply:
+def answer(kept_answer: AxisAnswer) -> AnswerReply:
     """An answer, with its problem."""
-    problem = None if found.status != "open" else problem_of(found.faults)
-    return AnswerReply(**{name: getattr(found, name) for name in found.__struct_fields__}, problem=problem)
+    problem = None if kept_answer.status != "open" else problem_of(kept_answer.faults)
+    return AnswerReply(**{name: getattr(kept_answer, name) for name in kept_answer.__struct_fields__}, problem=problem)
 
 
 def problem_of(faults: tuple[AxisFault, ...]) -> ProblemReply:
@@ -245,19 +245,19 @@ def problem_of(faults: tuple[AxisFault, ...]) -> ProblemReply:
     return msgspec.convert(Problem.at(named).body(), ProblemReply)
 
 
-def revision(found: RevisionLine) -> RevisionReply:
+def revision(record: RevisionLine) -> RevisionReply:
     """A line of the list of revisions."""
     same = [name for name in RevisionReply.__struct_fields__ if name not in ("created", "axis_count")]
-    values = {name: getattr(found, name) for name in same}
-    return RevisionReply(**values, created=moment(found.created), axis_count=found.axes)
+    values = {name: getattr(record, name) for name in same}
+    return RevisionReply(**values, created=moment(record.created), axis_count=record.axes)
 
 
-def frozen(found: RevisionLine, content: Frozen) -> FrozenReply:
+def frozen(record: RevisionLine, content: Frozen) -> FrozenReply:
     """A revision as it was frozen."""
     block = {name: getattr(content, name) for name in ("title", "reference", "author", "note", "common")}
-    return FrozenReply(revision=revision(found), axes=tuple(map(_frozen_axis, content.axes)), **block)
+    return FrozenReply(revision=revision(record), axes=tuple(map(_frozen_axis, content.axes)), **block)
 
 
-def _frozen_axis(found: FrozenAxis) -> FrozenAxisReply:
-    values: dict[str, Any] = structs.asdict(found)
-    return FrozenAxisReply(**values | {"answer": answer(found.answer)})
+def _frozen_axis(axis: FrozenAxis) -> FrozenAxisReply:
+    values: dict[str, Any] = structs.asdict(axis)
+    return FrozenAxisReply(**values | {"answer": answer(axis.answer)})

@@ -29,40 +29,40 @@ ANSWER = ("answer",)
 OPTIONS = N_("{question} Answer with answer={name}: and one of {options}.")
 
 
-async def draft_of_table(request: Request, body: bytes, given: Sequence[str]) -> MachineDraft:
+async def draft_of_table(request: Request, body: bytes, texts: Sequence[str]) -> MachineDraft:
     """Machine of a table, by answers to its questions; Problem 422 for open ones, 501 without the extra."""
     try:
         require("fleet")
     except ExtraMissingError as error:
         raise Problem(501, error.sentence) from None
     catalogue: Catalogue = request.app.state.catalogue
-    reading = await compute(request, "pages", _reading, body, given)
-    read, faults = await compute_beside(request, "files", reading)
+    reading = await compute(request, "pages", _reading, body, texts)
+    reading_of_body, faults = await compute_beside(request, "files", reading)
     if faults:
         raise Problem(422, faults, [Fault(ANSWER, fault.text, "answer") for fault in faults])
-    work = await compute(request, "pages", sizing_of, read, catalogue)
+    work = await compute(request, "pages", sizing_of, reading_of_body, catalogue)
     drafts = await worked(request, work)
     return MachineDraft(drafts, ENGINE_VERSION, catalogue.version, owner=request.state.api_key)
 
 
-def _reading(body: bytes, given: Sequence[str]) -> Callable[[], Any]:
+def _reading(body: bytes, texts: Sequence[str]) -> Callable[[], Any]:
     from hpn.web.axis_tables import WANTED  # Arrow takes half a second to import
 
-    return partial(read_answered, body, WANTED, given)
+    return partial(read_answered, body, WANTED, texts)
 
 
-def sizing_of(read: MachineReading, catalogue: Catalogue) -> Callable[[], Any]:
+def sizing_of(reading: MachineReading, catalogue: Catalogue) -> Callable[[], Any]:
     """The call that sizes the axes of a reading; Problem 422 where it can't be taken as it is."""
     from hpn.web.axis_tables import drafts_in
 
-    if read.refusal:
-        raise Problem(422, read.refusal)
-    for what, count, most in (("axes", read.axes, MOST_AXES), ("phases", read.phases, MOST_PHASES)):
+    if reading.refusal:
+        raise Problem(422, reading.refusal)
+    for what, count, most in (("axes", reading.axes, MOST_AXES), ("phases", reading.phases, MOST_PHASES)):
         if count > most:
             raise Problem(422, Sentence(EXCESS[what], {"most": str(most)}))
-    if read.reading.suffix:
-        return partial(drafts_in, read.rows, read.faults, {}, catalogue)
-    table = read.reading.table
+    if reading.reading.suffix:
+        return partial(drafts_in, reading.rows, reading.faults, {}, catalogue)
+    table = reading.reading.table
     assert table is not None
     _require_whole(table)
     return partial(drafts_in, table.axes, (), dict(table.origins), catalogue)
@@ -72,9 +72,9 @@ def _require_whole(table: Table) -> None:
     """Raise Problem 422 for a table that can't be read, or leaves questions open, with all of them."""
     if table.problem:
         raise Problem(422, table.problem)
-    asked = [_with_options(question, table.choices) for question in table.questions]
-    if asked:
-        raise Problem(422, asked, [Fault(ANSWER, question.text, "question") for question in asked])
+    questions = [_with_options(question, table.choices) for question in table.questions]
+    if questions:
+        raise Problem(422, questions, [Fault(ANSWER, question.text, "question") for question in questions])
 
 
 def _with_options(question: Sentence, choices: Sequence[Choice]) -> Sentence:

@@ -28,7 +28,7 @@ from hpn.web.api.wanted import FieldNames, field_names
 from hpn.web.columns import common_of, drafts_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, content_type_of, parsed, read_body
-from hpn.web.door.conditions import other_state
+from hpn.web.door.conditions import require_done
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
@@ -37,6 +37,7 @@ from hpn.web.machines import (
     apply,
     editable,
     found,
+    gone,
     guarded,
     once_of,
     patched,
@@ -289,8 +290,7 @@ async def delete_machine(request: Request, id: schemas.Id) -> Response:
     """Deletes a machine with its revisions permanently. A retry of saving it is then answered with 410."""
     machine = await editable(request, id, [])
     require_document(request, machine)
-    named = request.headers.get("if-match", "*").strip() != "*"
-    if not await request.app.state.store.delete(id, machine.version if named else None, None):
-        raise other_state()
+    version = None if request.headers.get("if-match", "*").strip() == "*" else machine.version
+    require_done(await request.app.state.store.delete(id, version, None), version, gone(id))
     note(request, machine=id)
     return Response(status_code=204)

@@ -28,7 +28,7 @@ from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes, Moment, encode
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
-from hpn.web.door.conditions import conditional, etag_of, other_state, require_match
+from hpn.web.door.conditions import conditional, etag_of, require_done, require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
@@ -50,7 +50,7 @@ router = APIRouter(prefix=ADDRESS, tags=["Motors"])
 """Its routes are of different groups, which each declares."""
 
 
-def _given(name: str | None) -> str:
+def _name(name: str | None) -> str:
     if not name:
         raise PydanticCustomError("empty", "must not be empty")
     return name
@@ -59,7 +59,7 @@ def _given(name: str | None) -> str:
 class MotorList(Distinct):
     """A list of motors under a name."""
 
-    name: Annotated[Title, AfterValidator(_given)] = Field(
+    name: Annotated[Title, AfterValidator(_name)] = Field(
         description="Name, which its owner gives one list alone.", examples=["Our servo motors"]
     )
     motors: Annotated[
@@ -129,8 +129,8 @@ async def save_list(request: Request) -> Response:
         said = Sentence(N_("there are {most} lists of motors, as many as one may keep"), {"most": str(MOST_LISTS)})
         raise Problem(409, said) from None
     note(request, motor_list=id)
-    kept = await _found(request, id)
-    return JSONBytes(encode(_line(kept)), 201, {"Location": f"{ADDRESS}/{id}", "ETag": _tag(kept)})
+    saved = await _found(request, id)
+    return JSONBytes(encode(_line(saved)), 201, {"Location": f"{ADDRESS}/{id}", "ETag": _tag(saved)})
 
 
 @router.get(
@@ -165,8 +165,8 @@ async def read_motor_list(request: Request, id: schemas.ListId) -> Response:
     if id == SERVER:
         motors = entries_of(request.app.state.catalogue.motors)
         return conditional(request, _whole(id, SERVER, [motor.model_dump() for motor in motors]))
-    kept = await _found(request, id)
-    return conditional(request, _whole(id, kept.name, Raw(kept.content)), _tag(kept))
+    saved = await _found(request, id)
+    return conditional(request, _whole(id, saved.name, Raw(saved.content)), _tag(saved))
 
 
 @router.put(
@@ -187,11 +187,10 @@ async def replace_motor_list(request: Request, id: schemas.ListId) -> Response:
         replaced = await request.app.state.store.replace_motor_list(id, draft, version)
     except NameTakenError:
         raise _taken(draft.name) from None
-    if not replaced:
-        raise _not_found(id) if version is None else other_state()
+    require_done(replaced, version, _not_found(id))
     note(request, motor_list=id)
-    kept = await _found(request, id)
-    return JSONBytes(encode(_line(kept)), headers={"ETag": _tag(kept), "Cache-Control": "no-cache"})
+    saved = await _found(request, id)
+    return JSONBytes(encode(_line(saved)), headers={"ETag": _tag(saved), "Cache-Control": "no-cache"})
 
 
 @router.delete(
@@ -206,8 +205,7 @@ async def replace_motor_list(request: Request, id: schemas.ListId) -> Response:
 async def delete_motor_list(request: Request, id: schemas.ListId) -> Response:
     """Deletes a list permanently. What was taken from it keeps its figures."""
     version = await _changeable(request, id)
-    if not await request.app.state.store.delete_motor_list(id, version):
-        raise _not_found(id) if version is None else other_state()
+    require_done(await request.app.state.store.delete_motor_list(id, version), version, _not_found(id))
     note(request, motor_list=id)
     return Response(status_code=204)
 
@@ -220,10 +218,10 @@ async def motors_of(request: Request, id: str) -> list[MotorEntry]:
             said = Sentence(N_("there are no motors: list them in motors.csv of a catalogue supplement"))
             raise InputError((("list",), said))
         return entries_of(state.catalogue.motors)
-    kept = await state.store.motor_list(id)
-    if kept is None:
+    saved = await state.store.motor_list(id)
+    if saved is None:
         raise InputError((("list",), Sentence(N_("there is no such list of motors"))))
-    return [MotorEntry.model_construct(**motor) for motor in msgspec.json.decode(kept.content)]
+    return [MotorEntry.model_construct(**motor) for motor in msgspec.json.decode(saved.content)]
 
 
 def _draft(body: bytes) -> MotorListDraft:
@@ -233,23 +231,23 @@ def _draft(body: bytes) -> MotorListDraft:
 
 
 async def _found(request: Request, id: str) -> SavedMotorList:
-    kept: SavedMotorList | None = await request.app.state.store.motor_list(id)
-    if kept is None:
+    saved: SavedMotorList | None = await request.app.state.store.motor_list(id)
+    if saved is None:
         raise _not_found(id)
-    return kept
+    return saved
 
 
 async def _changeable(request: Request, id: str) -> int | None:
     """Version that `If-Match` names, None where it names none; Problem 404, 403 and 412."""
     if id == SERVER:
         raise Problem(403, Sentence(N_("the list server is motors.csv of the service, which is read-only")))
-    kept, state = await _found(request, id), request.app.state
+    saved, state = await _found(request, id), request.app.state
     if state.gate.has_keys:
-        state.gate.require_owner(request, kept.owner or None)
+        state.gate.require_owner(request, saved.owner or None)
     if request.headers.get("if-match", "*").strip() == "*":
         return None
-    require_match(request, _tag(kept))
-    return kept.version
+    require_match(request, _tag(saved))
+    return saved.version
 
 
 def _taken(name: str) -> Problem:

@@ -53,8 +53,8 @@ async def motors_of_gear(request: Request, designation: schemas.Designation) -> 
 def motors_on_gear(application: Application, gear: Gear, catalogue: Catalogue) -> MotorsOnGearReply:
     """How far each motor of the catalogue’s list is used on a gear, best first."""
     uses = motors_on(application, gear, catalogue)
-    found = [MotorUseReply(use.motor, use.fits, use.governing, use.used, use.inertia_ratio) for use in uses]
-    return MotorsOnGearReply(catalogue.version, gear.designation, found)
+    replies = [MotorUseReply(use.motor, use.fits, use.governing, use.used, use.inertia_ratio) for use in uses]
+    return MotorsOnGearReply(catalogue.version, gear.designation, replies)
 
 
 def _reply(body: bytes, gear: Gear, catalogue: Catalogue) -> bytes:

@@ -47,8 +47,8 @@ from hpn.web.door.conditions import (
     conditional,
     etag_of,
     idempotency_key,
-    other_state,
     prefers_representation,
+    require_done,
     require_match,
 )
 from hpn.web.door.observation import note
@@ -192,8 +192,7 @@ async def rename_selection(request: Request, id: schemas.Id) -> Response:
     names = (await calculate(request, body, parsed, Names, body)).model_dump(exclude_unset=True)
     await changeable(request, id)
     version = await matched_version(request, id)
-    if not await store.rename(id, names, version):
-        raise not_found(id) if version is None else other_state()
+    require_done(await store.rename(id, names, version), version, not_found(id))
     note(request, selection=id)
     renamed, etag = await represented(request, id)
     return JSONBytes(renamed, headers={"ETag": etag, "Cache-Control": "no-cache"})
@@ -216,8 +215,7 @@ async def delete_selection(request: Request, id: schemas.Id) -> Response:
     store: Store = request.app.state.store
     await changeable(request, id)
     version = await matched_version(request, id)
-    if not await store.delete(id, version):
-        raise not_found(id) if version is None else other_state()
+    require_done(await store.delete(id, version), version, not_found(id))
     note(request, selection=id)
     return Response(status_code=204)
 

@@ -45,6 +45,12 @@ def other_state() -> Problem:
     return Problem(412, "If-Match names another state of this selection; read it again")
 
 
+def require_done(done: bool, version: int | None, gone: Problem, overtaken: Problem | None = None) -> None:
+    """Raise what kept a write from being done: `gone` where any version would have done, else `overtaken` or 412."""
+    if not done:
+        raise gone if version is None else overtaken or other_state()
+
+
 def _lists(header: str, etag: str, *, weakly: bool) -> bool:
     tags = re.findall(r'(?:W/)?"[^"]*"|\*', header)
     return "*" in tags or etag in tags or (weakly and f"W/{etag}" in tags)

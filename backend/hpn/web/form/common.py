@@ -10,7 +10,7 @@ from hpn.links.symbol import Symbol
 from hpn.links.symbols import BY_PATH, BY_SIZE
 from hpn.tables.numbers import WAS, WRITTEN, read_value
 from hpn.web.form.form import Form, for_reader
-from hpn.web.form.given import FieldProblem, Given
+from hpn.web.form.given import FieldProblem, SortedQuery
 from hpn.web.form.refusals import refusal_of
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
@@ -45,7 +45,7 @@ def _text(value: Any) -> str:
 
 def read(pairs: Sequence[tuple[str, str]], names: Sequence[str], reader: Reader) -> tuple[Form, Values]:
     """Form as it was sent, with its problems, and the values in it by path; a blank field is none."""
-    entries = Given([pair for pair in pairs if pair[0] in (*names, WRITTEN, WAS)])
+    entries = SortedQuery([pair for pair in pairs if pair[0] in (*names, WRITTEN, WAS)])
     values = dict[str, Any]()
     problems: list[FieldProblem] = []
     several = [(name, text) for name, texts in entries.lists.items() for text in texts]

@@ -101,7 +101,7 @@ class FieldProblem:
         return f"{self.name}-{self.index or 0}" if is_one else f"f-{self.name}"
 
 
-class Given:
+class SortedQuery:
     """A query sorted into rows of phases, moves and bodies, single values, lists and what belongs to the page.
 
     Texts are in the wire's units and notation. The buttons among the pairs are played on it afterwards.

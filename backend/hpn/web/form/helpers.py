@@ -14,7 +14,7 @@ from hpn.links.rows import filled
 from hpn.links.symbol import Symbol
 from hpn.physics.motion.bodies import Body, BodySum, sum_of
 from hpn.tables.numbers import read_value
-from hpn.web.form.given import FieldProblem, Given
+from hpn.web.form.given import FieldProblem, SortedQuery
 from hpn.web.form.refusals import refusal_of
 from hpn.words.wording import Sentence
 
@@ -68,13 +68,13 @@ def _model(
         return None
 
 
-def hand_over(given: Given, *, gravity: bool) -> None:
+def hand_over(query: SortedQuery, *, gravity: bool) -> None:
     """Take what the bodies come to as the mechanism's inertia, and as its gravity too."""
-    total = body_table(given.bodies.rows).sum
+    total = body_table(query.bodies.rows).sum
     if total is None:
         return
     figures = {"J": total.inertia_kgm2}
-    if gravity and given.scalars.get("mech", "").strip() == "rotary" and total.gravity_radius_mm is not None:
+    if gravity and query.scalars.get("mech", "").strip() == "rotary" and total.gravity_radius_mm is not None:
         figures |= {"mg": total.gravity_mass_kg, "rg": total.gravity_radius_mm}
     for name, value in figures.items():
-        given.put(name, f"{value:.{DIGITS}g}")
+        query.put(name, f"{value:.{DIGITS}g}")

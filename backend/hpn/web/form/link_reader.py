@@ -26,7 +26,7 @@ from hpn.tables.numbers import read_value
 from hpn.web.form.beside import with_beside
 from hpn.web.form.buttons import play
 from hpn.web.form.form import Form
-from hpn.web.form.given import CONDITION, REQUIRED, FieldProblem, Given, Pairs
+from hpn.web.form.given import CONDITION, REQUIRED, FieldProblem, Pairs, SortedQuery
 from hpn.web.form.helpers import BodyTable, body_table
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.tolerance_fields import COLUMN, OF_COLUMN, OF_ROW, ROW, fields
@@ -69,51 +69,51 @@ Completes = Callable[[dict[str, Any]], dict[str, Any]]
 
 def parse(pairs: Pairs, whole: Completes = dict) -> Form:
     """Form of a query, with everything that the query says and a message for each wrong field."""
-    given = Given(with_beside(pairs))
-    focus = play(given, lambda sorted_pairs: _read(sorted_pairs, whole)[0])
-    application, problems = _read(given, whole)
-    decimal = given.notation.reader.decimal
+    query = SortedQuery(with_beside(pairs))
+    focus = play(query, lambda sorted_pairs: _application_of(sorted_pairs, whole)[0])
+    application, problems = _application_of(query, whole)
+    decimal = query.notation.reader.decimal
     return Form(
-        rows=tuple(given.phases.rows),
-        texts=given.scalars,
-        lists={name: tuple(texts) for name, texts in given.lists.items()},
-        moves=tuple(given.moves.rows) if given.has_motion else (),
-        has_motion=given.has_motion,
-        bodies=body_table(given.bodies.rows) if given.has_motion else BodyTable(),
-        tolerances=tuple(given.tolerances),
-        asides=tuple(given.asides),
-        shown=frozenset(given.shown),
-        has_tolerances=given.has_tolerances,
-        is_exact=given.is_exact,
-        gear=given.page.get("gear", "").strip(),
-        pins=given.pinned(),
+        rows=tuple(query.phases.rows),
+        texts=query.scalars,
+        lists={name: tuple(texts) for name, texts in query.lists.items()},
+        moves=tuple(query.moves.rows) if query.has_motion else (),
+        has_motion=query.has_motion,
+        bodies=body_table(query.bodies.rows) if query.has_motion else BodyTable(),
+        tolerances=tuple(query.tolerances),
+        asides=tuple(query.asides),
+        shown=frozenset(query.shown),
+        has_tolerances=query.has_tolerances,
+        is_exact=query.is_exact,
+        gear=query.page.get("gear", "").strip(),
+        pins=query.pinned(),
         focus=focus,
         problems=tuple(replace(problem, message=problem.message.marked(decimal)) for problem in problems),
         application=application,
-        written=given.notation.marker,
-        typed=given.typed,
-        condition={name: given.page[name] for name in CONDITION if given.page.get(name, "").strip()},
-        labels={name: given.labels.get(name, [""])[0] for name in LABELS},
+        written=query.notation.marker,
+        typed=query.typed,
+        condition={name: query.page[name] for name in CONDITION if query.page.get(name, "").strip()},
+        labels={name: query.labels.get(name, [""])[0] for name in LABELS},
     )
 
 
-def _read(given: Given, whole: Completes) -> tuple[Application | None, list[FieldProblem]]:
+def _application_of(query: SortedQuery, whole: Completes) -> tuple[Application | None, list[FieldProblem]]:
     """Application that is given, or a message for each wrong field; neither where the form is still blank."""
-    problems = [*given.problems(), *_list_problems(given)]
-    document, unread = _document(given)
+    problems = [*query.problems(), *_list_problems(query)]
+    document, unread = _document(query)
     places: dict[str, FieldProblem] = {}
-    unread += _tolerances(given, document, places)
+    unread += _tolerances(query, document, places)
     document = whole(document)
-    if _untouched(given):
+    if _untouched(query):
         return None, problems
     problems += unread
-    application, refused = _validated(document, given.duty.rows, problems, places)
+    application, refused = _validated(document, query.duty.rows, problems, places)
     problems += refused
     return None if problems else application, problems
 
 
-def _list_problems(given: Given) -> Iterable[FieldProblem]:
-    for name, texts in given.lists.items():
+def _list_problems(query: SortedQuery) -> Iterable[FieldProblem]:
+    for name, texts in query.lists.items():
         for k, text in enumerate(texts):
             if BY_NAME[name].kind != "text" and isinstance(message := read_value(text, "whole"), Sentence):
                 if _SEVERAL.fullmatch(text.strip()):
@@ -122,32 +122,32 @@ def _list_problems(given: Given) -> Iterable[FieldProblem]:
                 yield FieldProblem(name, k, message)
 
 
-def _untouched(given: Given) -> bool:
+def _untouched(query: SortedQuery) -> bool:
     """The form was sent with its duty table still blank, but for the profile that a move begins with."""
-    columns = given.duty.counts
+    columns = query.duty.counts
     begun = {"mv"} if "mt" in columns else set()
-    if any(map(filled, given.phases.rows)):
+    if any(map(filled, query.phases.rows)):
         return False
-    if not given.has_motion:
+    if not query.has_motion:
         return all(name in columns for name in REQUIRED)
-    begins = "mv" in columns and given.scalars.get("mech", "").strip() in TYPES
-    return begins and not any(filled(move).keys() - begun for move in given.moves.rows)
+    begins = "mv" in columns and query.scalars.get("mech", "").strip() in TYPES
+    return begins and not any(filled(move).keys() - begun for move in query.moves.rows)
 
 
-def _document(given: Given) -> tuple[dict[str, Any], list[FieldProblem]]:
+def _document(query: SortedQuery) -> tuple[dict[str, Any], list[FieldProblem]]:
     """Nested input of the application model; what can't be read is left out and reported."""
     problems: list[FieldProblem] = []
     cycle: dict[str, Any] = {}
-    if given.has_motion:
-        symbols = {symbol.name: symbol for symbol in move_symbols(given.scalars.get("mech", "").strip())}
-        cycle["motion"] = {"mechanism": {}, "moves": _table(given.moves.rows, symbols, problems)}
+    if query.has_motion:
+        symbols = {symbol.name: symbol for symbol in move_symbols(query.scalars.get("mech", "").strip())}
+        cycle["motion"] = {"mechanism": {}, "moves": _table(query.moves.rows, symbols, problems)}
     else:
-        cycle["phases"] = _table(given.phases.rows, PHASE_BY_NAME, problems)
+        cycle["phases"] = _table(query.phases.rows, PHASE_BY_NAME, problems)
         if len(cycle["phases"]) == 1:
-            columns = {name: [row[name] for row in given.phases.rows] for name in given.phases.names}
+            columns = {name: [row[name] for row in query.phases.rows] for name in query.phases.names}
             problems = [_with_two_phases(problem, columns[problem.name]) for problem in problems]
     document: dict[str, Any] = {"duty_cycle": cycle}
-    for name, text in given.scalars.items():
+    for name, text in query.scalars.items():
         if name in OF_COLUMN:
             continue
         symbol = BY_NAME[name]
@@ -155,24 +155,24 @@ def _document(given: Given) -> tuple[dict[str, Any], list[FieldProblem]]:
             document.setdefault(symbol.path[0], {})[symbol.path[1]] = _numbers_by_size(name, by_size(text), problems)
             continue
         _put(document, symbol.path, symbol, text, FieldProblem(name, None, Sentence("")), problems)
-    for name, texts in given.lists.items():
+    for name, texts in query.lists.items():
         values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
         document.setdefault(BY_NAME[name].path[0], {})[BY_NAME[name].path[1]] = values or None
     return document, problems
 
 
-def _tolerances(given: Given, document: dict[str, Any], places: dict[str, FieldProblem]) -> list[FieldProblem]:
+def _tolerances(query: SortedQuery, document: dict[str, Any], places: dict[str, FieldProblem]) -> list[FieldProblem]:
     """Set tolerances into a document, and the field of each by its path; what is wrong with them."""
-    if given.is_exact:
+    if query.is_exact:
         return []
-    mechanism = given.scalars.get("mech", "").strip() if given.has_motion else None
+    mechanism = query.scalars.get("mech", "").strip() if query.has_motion else None
     faults = [
         (FieldProblem(one.name, one.index, Sentence("")), tolerances.read(one.symbol, one.row, one.sides, mechanism))
-        for one in fields(given.duty, given.scalars)
+        for one in fields(query.duty, query.scalars)
     ]
     faults += [
         (FieldProblem(TOLERANCE, k, Sentence("")), tolerances.read_text(text, mechanism))
-        for k, text in enumerate(given.tolerances)
+        for k, text in enumerate(query.tolerances)
     ]
     problems, values = [], {}
     for place, said in faults:

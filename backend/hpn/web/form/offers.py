@@ -7,7 +7,7 @@ from dataclasses import replace
 from msgspec.structs import replace as with_values
 
 from hpn.tables.numbers import ONE_READING
-from hpn.web.form.given import FieldProblem, Given
+from hpn.web.form.given import FieldProblem, SortedQuery
 from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence, Typed
 
@@ -18,19 +18,19 @@ _TAKEN = re.compile(r"(?:f-(?P<name>\w+)|(?P<column>\w+)-(?P<row>[0-9]{1,5})):(?
 """Value of a button: the element that takes the number, and the number, as in `f-Lb:20000`."""
 
 
-def take(given: Given, offer: str) -> None:
+def take(query: SortedQuery, offer: str) -> None:
     """Put the number of a button in place of a text that is given."""
     if taken := _TAKEN.fullmatch(offer):
         name, row = taken["name"] or taken["column"], int(taken["row"] or 0)
-        text = given.in_wire_units(name, taken["text"])
-        table = given.table_of(name)
+        text = query.in_wire_units(name, taken["text"])
+        table = query.table_of(name)
         if table and name in table.counts and name in table.names and row < len(table.rows):
             table.rows[row][name] = text
-            given.typed = None
-        elif name in given.single:
-            given.put(name, text)
-        elif name in given.lists:
-            given.lists[name][0] = text
+            query.typed = None
+        elif name in query.single:
+            query.put(name, text)
+        elif name in query.lists:
+            query.lists[name][0] = text
 
 
 def beside_fields(problems: Sequence[FieldProblem], written: str | None, reader: Reader) -> tuple[FieldProblem, ...]:

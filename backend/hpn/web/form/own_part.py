@@ -67,8 +67,8 @@ def _of_symbol(symbol: Symbol, own: Json) -> Iterator[tuple[str, str]]:
         yield symbol.name, _text(value)
 
 
-def _tolerances(given: Any) -> Iterator[tuple[str, str]]:
-    for path, value in given.items() if isinstance(given, Mapping) else ():
+def _tolerances(tolerances: Any) -> Iterator[tuple[str, str]]:
+    for path, value in tolerances.items() if isinstance(tolerances, Mapping) else ():
         try:
             yield TOLERANCE, text_of(path, Tolerance.model_validate(value))
         except (KeyError, ValidationError):

@@ -33,7 +33,7 @@ def refusal_of(error: Any) -> Sentence:
         return Sentence(template, {"bound": Quantity(context[key], suffix_of(str(error["loc"][-1])), 12)})
     if error["type"] in REFUSALS:
         symbols = _OF_BODY if error["type"].startswith("body_") else _OF_MOTION
-        values = {name: _told(name, value, symbols) for name, value in context.items()}
+        values = {name: _value_of(name, value, symbols) for name, value in context.items()}
         return Sentence(REFUSALS[error["type"]], values)
     if error["type"] in WITH_VALUES:
         return Sentence(WITH_VALUES[error["type"]], {name: str(value) for name, value in context.items()})
@@ -51,7 +51,7 @@ def refusal_of(error: Any) -> Sentence:
     return Sentence("{text}", {"text": error["msg"]}, ("text",))
 
 
-def _told(name: str, value: Quantity | str, symbols: Mapping[str, Symbol]) -> Value:
+def _value_of(name: str, value: Quantity | str, symbols: Mapping[str, Symbol]) -> Value:
     """A value of a refusal: fields and profiles by their names."""
     if isinstance(value, Quantity):
         return value

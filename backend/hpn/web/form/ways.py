@@ -13,7 +13,7 @@ from hpn.links.symbols import mechanism_symbols
 from hpn.links.writer import to_link
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry
-from hpn.web.form.given import REST_FRICTION, REVERSES, Given, Pairs, is_of_one_way
+from hpn.web.form.given import REST_FRICTION, REVERSES, Pairs, SortedQuery, is_of_one_way
 from hpn.words.wording import N_
 
 PHASES, MOTION = "phases", "motion"
@@ -42,10 +42,10 @@ def way_of(pairs: Pairs) -> str:
     return code if code in TYPES else PHASES
 
 
-def switch(given: Given, wanted: str) -> None:
+def switch(current: SortedQuery, wanted: str) -> None:
     """Choose another way: its inputs as they were left, those of before aside."""
-    own = given.cycle()
-    queries = {way_of(query): query for query in map(_read, given.asides)}
+    own = current.cycle()
+    queries = {way_of(query): query for query in map(_pairs_of, current.asides)}
     here = way_of(own)
     if here != PHASES:
         stray = [pair for pair in own if pair[0] in _OF_PHASES_ALONE]  # given beside a motion
@@ -57,8 +57,8 @@ def switch(given: Given, wanted: str) -> None:
     if wanted != here and wanted in START:
         before, own = own, list(queries.pop(wanted, []) or _begun(own, here, wanted))
         queries[here] = before
-    given.put_cycle(own)
-    given.asides = [_written(query) for query in queries.values() if _says_anything(query)]
+    current.put_cycle(own)
+    current.asides = [_written(query) for query in queries.values() if _says_anything(query)]
 
 
 def _says_anything(query: Pairs) -> bool:
@@ -73,19 +73,19 @@ def _begun(own: Pairs, here: str, wanted: str) -> Pairs:
     return parse_qsl(START[wanted], keep_blank_values=True)
 
 
-def take_over(given: Given, application: Application | None) -> bool:
+def take_over(current: SortedQuery, application: Application | None) -> bool:
     """Have the phases that come out of a motion in place of the motion, which is kept aside; False without one."""
-    if application is None or not given.has_motion:
+    if application is None or not current.has_motion:
         return False
     phases = tuple(map(_rounded, application.duty_cycle.load_phases))
     cycle = to_link(Application(duty_cycle=DutyCycle(phases=phases))).removeprefix("/?")
-    own = given.cycle()
-    says = [(REVERSES, given.scalars.get(REVERSES, "0"))]
+    own = current.cycle()
+    says = [(REVERSES, current.scalars.get(REVERSES, "0"))]
     if friction := application.duty_cycle.rest_friction_Nm:
         says.append((REST_FRICTION, repr(_in_few_digits(friction))))
-    given.put_cycle([*_read(cycle), *says])
-    asides = [query for query in given.asides if way_of(_read(query)) != PHASES]
-    given.asides = [*asides, _written(own)]
+    current.put_cycle([*_pairs_of(cycle), *says])
+    asides = [query for query in current.asides if way_of(_pairs_of(query)) != PHASES]
+    current.asides = [*asides, _written(own)]
     return True
 
 
@@ -98,7 +98,7 @@ def _in_few_digits(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
 
 
-def _read(query: str) -> Pairs:
+def _pairs_of(query: str) -> Pairs:
     """Pairs of a query that stood aside; none where somebody else has written it."""
     try:
         pairs = parse_qsl(query, keep_blank_values=True, max_num_fields=MOST_FIELDS)

@@ -32,12 +32,12 @@ def file_of(answers: pa.Table, created: datetime, suffix: str, reader: Reader) -
     """
     table = answers.drop_columns(NEAREST.names)
     if suffix == "parquet":
-        return as_parquet(_told(table, Reader("en")))
-    texts = _told(table, reader)
+        return as_parquet(_in_words(table, Reader("en")))
+    texts = _in_words(table, reader)
     return _csv(texts) if suffix == "csv" else _workbook(texts, created)
 
 
-def _told(table: pa.Table, reader: Reader) -> pa.Table:
+def _in_words(table: pa.Table, reader: Reader) -> pa.Table:
     """Answers with the reasons of rejected axes as texts."""
     errors = [_reasons_in(reasons_of(cell), reader) for cell in table[FAULTS].to_pylist()]
     return table.drop_columns(FAULTS).append_column("error", pa.array(errors, pa.string()))

@@ -38,11 +38,11 @@ def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "",
         summary, by_need(rows), links_of(applications, base), allowed_of(applications), top, weights_of(catalogue)
     )
     return copy_context().run(
-        _told, Reader(language), view=view, name=name, base=base, catalogue_version=catalogue.version
+        _sentence, Reader(language), view=view, name=name, base=base, catalogue_version=catalogue.version
     )
 
 
-def _told(reader: Reader, **values: Any) -> str:
+def _sentence(reader: Reader, **values: Any) -> str:
     VISIT.set(Visit(reader, values["base"]))
     return (
         _environment()

@@ -22,6 +22,7 @@ from hpn.store import Machine, RevisionDraft, StoreUnavailableError
 from hpn.web.columns import revision_of, thawed
 from hpn.web.door.access import ADMIN, admit
 from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.conditions import require_done
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import PoolName, compute, pool_of, while_present
@@ -239,8 +240,8 @@ async def rename(request: Request) -> Response:
     fields = dict(pairs_of(await read_form(request)))
     saved, version = await _own(request), version_of(fields)
     names = names_of(fields, saved)
-    if not await request.app.state.store.rename(saved.id, names, version, "machine"):
-        raise Problem(404, GONE) if version is None or saved.saved is None else changed_since()
+    is_renamed = await request.app.state.store.rename(saved.id, names, version, "machine")
+    require_done(is_renamed, version if saved.saved else None, Problem(404, GONE), changed_since())
     note(request, machine=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
 
@@ -258,8 +259,8 @@ async def delete(request: Request) -> Response:
     given = "content-type" in request.headers  # a script may send no body
     version = version_of(dict(pairs_of(await read_form(request)))) if given else None
     saved = await _own(request)
-    if not await request.app.state.store.delete(saved.id, version, "machine"):
-        raise Problem(404, GONE) if version is None else changed_since()
+    is_deleted = await request.app.state.store.delete(saved.id, version, "machine")
+    require_done(is_deleted, version, Problem(404, GONE), changed_since())
     note(request, machine=saved.id)
     return RedirectResponse(ADDRESS, 303)
 

@@ -34,7 +34,7 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
-from hpn.web.form.given import CYCLE_NAMES, Given, Pairs
+from hpn.web.form.given import CYCLE_NAMES, Pairs, SortedQuery
 from hpn.web.form.linked import query_part
 from hpn.web.form.tolerance_fields import OF_ROW
 from hpn.web.pages import calculator
@@ -77,16 +77,16 @@ def start(request: Request) -> Response:
 
 async def paste(request: Request) -> Response:
     """Previews what was pasted or uploaded, or takes it."""
-    given = PastePost()
+    post = PastePost()
     try:
-        given = await compute(request, "pages", _given, await read_parts(request))
+        post = await compute(request, "pages", _given, await read_parts(request))
         reading = Reading()
-        if given.file or given.text.strip():
-            reading = await read(request, given.file or given.text, WANTED, given.fields)
-        return await compute(request, "pages", _answer, request, given, reading)
+        if post.file or post.text.strip():
+            reading = await read(request, post.file or post.text, WANTED, post.fields)
+        return await compute(request, "pages", _answer, request, post, reading)
     except Problem as problem:
         problems = problem.sentences or (_plain(problem.detail),)
-        draft = PasteDraft(given.link, given.text, problems=problems)
+        draft = PasteDraft(post.link, post.text, problems=problems)
         response = await compute(request, "pages", _render, request, draft, problem.status_code)
         response.headers.update(problem.headers or {})
         return response
@@ -113,14 +113,14 @@ def _given(parts: Mapping[str, bytes]) -> PastePost:
     return PastePost(link, text, file, fields)
 
 
-def _answer(request: Request, given: PastePost, reading: Reading) -> Response:
-    text = reading.text if given.file else given.text
+def _answer(request: Request, post: PastePost, reading: Reading) -> Response:
+    text = reading.text if post.file else post.text
     if reading.is_application:
-        return _of_application(request, given.link, text, given.fields.get("take", ""))
-    draft = _draft(given.link, text, reading)
-    if given.file and not text and reading.sheets and "hx-request" not in request.headers:
-        draft = replace(draft, book=packed(given.file))
-    return _taken_or_shown(request, given.fields, draft)
+        return _of_application(request, post.link, text, post.fields.get("take", ""))
+    draft = _draft(post.link, text, reading)
+    if post.file and not text and reading.sheets and "hx-request" not in request.headers:
+        draft = replace(draft, book=packed(post.file))
+    return _taken_or_shown(request, post.fields, draft)
 
 
 def _taken_or_shown(request: Request, fields: Mapping[str, str], draft: PasteDraft) -> Response:
@@ -190,13 +190,13 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     In place of the worked example they begin without its pause, emergency stop and ratio.
     """
     assert draft.table is not None
-    given = Given(pairs_of(draft.link))
+    query = SortedQuery(pairs_of(draft.link))
     dropped = set(CYCLE_NAMES)
     if draft.example and not append:
         dropped |= {name for name, _ in pairs_of(to_link(Application.worked_example()).removeprefix("/?"))}
     if stop := draft.table.stop_Nm:
         dropped |= {name for name, symbol in BY_NAME.items() if symbol.path[0] == "emergency_stop" and name != "Nk"}
-    rest = [(name, value) for name, value in given.beside() if name not in dropped]
+    rest = [(name, value) for name, value in query.beside() if name not in dropped]
     if not append:  # a tolerance of one phase goes with it
         rest = [(name, value) for name, value in rest if name != TOLERANCE]
     rest += [("Tk", stop)] if stop else []
@@ -204,7 +204,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     named = zip(names, draft.table.phases, strict=True)
     rows = [{NAME.role: name, **dict(zip(PHASE_ROLES, phase, strict=True))} for name, phase in named]
     if append:
-        rows = [*filter(filled, given.phases.rows), *rows]
+        rows = [*filter(filled, query.phases.rows), *rows]
     used = {name for row in rows for name, text in row.items() if text}
     columns = [*used_columns(PHASE_BY_NAME, used), *(name for name in OF_ROW if name in used)]
     return [(name, row.get(name, "")) for row in rows for name in columns] + rest

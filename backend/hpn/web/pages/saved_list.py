@@ -13,6 +13,7 @@ from hpn.store import LineFilter, Machine, SavedSelection, Store
 from hpn.web.archive import Line, changeable, not_found
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
+from hpn.web.door.conditions import require_done
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
@@ -81,8 +82,8 @@ async def rename_selection(request: Request) -> Response:
 
 async def _rename(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
     version = version_of(fields)
-    if not await request.app.state.store.rename(saved.id, names_of(fields, saved), version):
-        raise not_found(saved.id) if version is None else changed_since()
+    is_renamed = await request.app.state.store.rename(saved.id, names_of(fields, saved), version)
+    require_done(is_renamed, version, not_found(saved.id), changed_since())
 
 
 def version_of(fields: Mapping[str, str]) -> int | None:
@@ -126,8 +127,7 @@ async def delete_selection(request: Request) -> Response:
 
 async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
     version = version_of(fields)
-    if not await request.app.state.store.delete(saved.id, version):
-        raise not_found(saved.id) if version is None else changed_since()
+    require_done(await request.app.state.store.delete(saved.id, version), version, not_found(saved.id), changed_since())
 
 
 async def _changed(request: Request, change: Any) -> Response:

@@ -86,9 +86,9 @@ def _posted(body: bytes) -> Posted:
     fields = pairs_of(body)
     named = dict(fields)
     own = [(name, text) for name, text in fields if name not in ("link", "once")]
-    given = {name for name, _ in own}
+    names = {name for name, _ in own}
     linked = pairs_of(query_part(named.get("link", "")))
-    pairs = [*own, *(pair for pair in linked if pair[0] not in given)]
+    pairs = [*own, *(pair for pair in linked if pair[0] not in names)]
     return Posted(pairs, named.get("once", ""), link_reader.parse(pairs))
 
 

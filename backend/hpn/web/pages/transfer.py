@@ -23,7 +23,7 @@ async def application_file(request: Request) -> Response:
 
 
 def _json_of(query: str) -> Response:
-    application, _ = _read(query)
+    application, _ = _application_of(query)
     return _file(application.model_dump_json(indent=2, exclude_unset=True), "application.json", "application/json")
 
 
@@ -33,7 +33,7 @@ async def cycle_file(request: Request) -> Response:
 
 
 def _csv_of(query: str) -> Response:
-    application, decimal = _read(query)
+    application, decimal = _application_of(query)
     return _file(write_table(application.duty_cycle, decimal), "duty-cycle.csv", "text/csv")
 
 
@@ -55,7 +55,7 @@ def _cell(value: float | str | None, decimal: Decimal) -> str | None:
     return harmless(value) if value is None or isinstance(value, str) else written(value).replace(".", decimal)
 
 
-def _read(query: str) -> tuple[Application, Decimal]:
+def _application_of(query: str) -> tuple[Application, Decimal]:
     link = linked(query, "decimal")
     decimal = link.options.get("decimal", ".")
     if decimal not in (".", ","):
