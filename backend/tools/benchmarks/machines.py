@@ -1,4 +1,6 @@
-"""A machine of ten thousand axes: showing and sorting its page, listing its axes, opening one and saving it."""
+"""A machine of ten thousand axes: showing, sorting and filtering its page, listing its axes, opening one and saving it,
+and comparing what was changed with the revision of before.
+"""
 
 import json
 import statistics
@@ -18,9 +20,11 @@ LISTED = "order,axes.number,axes.name,axes.quantity,axes.answer"
 ACTIONS: Mapping[str, str] = {
     "show": "/machines/{id}",
     "sort": "/machines/{id}?sort=-utilisation",
+    "filter": "/machines/{id}?show=changed",
     "list": f"/api/v1/machines/{{id}}?fields={LISTED}",
     "open": "/api/v1/machines/{id}/axes/{number}",
     "save": "/api/v1/machines/{id}/axes/{number}",
+    "compare": "/api/v1/machines/{id}/differences?from=A&to=now",
 }
 """Actions on a machine, and their addresses."""
 
@@ -54,10 +58,12 @@ def _machine() -> bytes:
 
 
 def _saved(server: Server, body: bytes) -> tuple[str, float]:
-    """Id of the machine, and seconds until it was answered."""
+    """Id of the machine, which has a revision, and seconds until it was answered."""
     start = time.perf_counter()
     id: str = json.loads(server.ask("/api/v1/machines", body))["id"]
-    return id, time.perf_counter() - start
+    seconds = time.perf_counter() - start
+    server.ask(f"/api/v1/machines/{id}/revisions", b'{"label": "A"}')
+    return id, seconds
 
 
 def _turn_of(server: Server, action: str, id: str) -> Callable[[int], float]:
