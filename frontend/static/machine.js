@@ -4,22 +4,43 @@ const table = () => document.getElementById("axes");
 const marks = () => [...table()?.querySelectorAll(".pick input") ?? []];
 const isText = (element) => element.matches("textarea, select, input:not([type=checkbox], [type=radio])");
 
-// --- The effect -------------------------------------------------------------------------------------------------------
+// --- Changes: counted while they are made, and given up where somebody stops them ----------------------------------------
 
 let asked = null;
 let waiting = 0;
 
+// Page that answers a form; `tell` gets every count on the way.
+async function send(form, action, tell, signal) {
+  const body = new URLSearchParams(new FormData(form));
+  body.set("do", action);
+  const headers = { Accept: "text/event-stream, text/html" };
+  const answer = await fetch(form.action, { method: "POST", body, headers, signal });
+  if (!answer.headers.get("Content-Type")?.startsWith("text/event-stream")) return answer.text();
+  const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+  for (let rest = ""; ;) {
+    const { value, done } = await reader.read();
+    if (done) throw new Error("the answer broke off");
+    const events = (rest + value).split("\n\n");
+    rest = events.pop();
+    for (const event of events) {
+      const said = JSON.parse(event.slice("data: ".length));
+      if ("page" in said) return said.page;
+      tell(said);
+    }
+  }
+}
+
+const pageOf = (text) => new DOMParser().parseFromString(text, "text/html");
+
 async function sayEffect(form) {
   asked?.abort();
   asked = new AbortController();
-  const body = new URLSearchParams(new FormData(form));
-  body.set("do", "dry");
+  const effect = form.querySelector("[data-effect]");
   try {
-    const answer = await fetch(form.action, { method: "POST", body, signal: asked.signal });
-    const page = new DOMParser().parseFromString(await answer.text(), "text/html");
-    const same = page.getElementById(form.id);
+    const tell = (said) => { if (said.done) effect.textContent = said.told; };
+    const same = pageOf(await send(form, "dry", tell, asked.signal)).getElementById(form.id);
     if (!same) return;
-    form.querySelector("[data-effect]").replaceChildren(...same.querySelector("[data-effect]").childNodes);
+    effect.replaceChildren(...same.querySelector("[data-effect]").childNodes);
     form.querySelector("[data-apply]").hidden = same.querySelector("[data-apply]").hidden;
   } catch (error) {
     if (error.name !== "AbortError") throw error;
@@ -35,6 +56,67 @@ document.addEventListener("input", (event) => {
   waiting = setTimeout(() => sayEffect(form), 400);
 });
 
+function show(text) {
+  const page = pageOf(text);
+  const found = page.querySelector("main");
+  document.querySelector("main").replaceWith(found);
+  document.title = page.title;
+  begin();
+  found.querySelector(".machine-strap:not([hidden]), [role=alert]")?.scrollIntoView({ block: "nearest" });
+}
+
+// A long change: its count, and the button that stops it. What is stopped has changed nothing, and stays in the fields.
+async function change(form, action) {
+  clearTimeout(waiting);
+  asked?.abort();
+  const stopping = new AbortController();
+  const strap = document.getElementById("work");
+  const stop = strap.querySelector("button");
+  const [count, bar] = [strap.querySelector("[data-count]"), strap.querySelector("progress")];
+  const shown = setTimeout(() => { strap.hidden = false; }, 400);
+  say("");
+  stop.disabled = false;
+  stop.onclick = () => stopping.abort();
+  try {
+    show(await send(form, action, (said) => {
+      count.textContent = said.told;
+      bar.max = said.of || 1;
+      bar.value = said.done;
+      stop.disabled = said.saving;
+    }, stopping.signal));
+  } catch (error) {
+    await tellEnd(error.name === "AbortError" ? "stopped" : "broken", strap.dataset.state);
+  } finally {
+    clearTimeout(shown);
+    strap.hidden = true;
+  }
+}
+
+// The end of a change without its answer: the page stays as it is, unless the machine is another one by now.
+async function tellEnd(end, before) {
+  try {
+    const text = await (await fetch(location.href)).text();
+    if (pageOf(text).getElementById("work")?.dataset.state !== before) {
+      show(text);
+      return say("meanwhile");
+    }
+  } catch {
+    return say("broken");
+  }
+  say(end);
+}
+
+function say(end) {
+  for (const said of document.querySelectorAll("[data-end]")) said.hidden = said.dataset.end !== end;
+}
+
+document.addEventListener("submit", (event) => {
+  const form = event.target;
+  if (!form.matches("form[action$='/change'], form[action*='/change?']") || !event.submitter) return;
+  event.preventDefault();
+  change(form, event.submitter.value);
+});
+
 // --- Marking ----------------------------------------------------------------------------------------------------------
 
 document.addEventListener("change", (event) => {
@@ -44,9 +126,6 @@ document.addEventListener("change", (event) => {
 });
 
 // --- Keys -------------------------------------------------------------------------------------------------------------
-
-// The effect is said by itself: nobody has to ask for it.
-for (const button of document.querySelectorAll("form[data-dry] [value=dry]")) button.hidden = true;
 
 const KEYS = {
   "/": () => document.querySelector(".finding [type=search]")?.focus(),
@@ -84,14 +163,14 @@ document.addEventListener("keydown", (event) => {
   key();
 });
 
-// --- Fewest kinds -----------------------------------------------------------------------------------------------------
+// --- What takes its time ----------------------------------------------------------------------------------------------
 
-// They take a second: the page does not wait for them.
-async function loadKinds(place) {
+// The page does not wait for fewest kinds, nor for what changed in a large machine.
+async function load(place) {
   const answer = await fetch(place.dataset.load);
   if (!answer.ok) return;
   const page = new DOMParser().parseFromString(await answer.text(), "text/html");
-  const found = page.getElementById("kinds");
+  const found = page.getElementById(place.id);
   if (!found) return;
   // Steps that can be undone go along.
   const past = document.querySelectorAll(".undo [name=past]");
@@ -99,5 +178,10 @@ async function loadKinds(place) {
   place.replaceWith(found);
 }
 
-const kinds = document.querySelector("#kinds[data-load]");
-if (kinds) loadKinds(kinds);
+function begin() {
+  // The effect is said by itself: nobody has to ask for it.
+  for (const button of document.querySelectorAll("form[data-dry] [value=dry]")) button.hidden = true;
+  for (const place of document.querySelectorAll("[data-load]")) load(place);
+}
+
+begin();

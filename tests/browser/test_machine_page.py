@@ -79,3 +79,90 @@ def test_a_phone_shows_every_axis_and_its_marks(visitor: Visitor, machine: str, 
     expect(page.get_by_role("button", name="Remove")).to_be_visible()
     expect(page.get_by_role("heading", name="Fewest kinds")).to_be_visible()
     assert violations(page) == []
+
+
+@pytest.fixture
+def revised(server: str, machine: str) -> str:
+    """Address of a machine that differs from its revision A and has tolerances."""
+    api = f"{server}/api/v1{machine}"
+    httpx.post(f"{api}/revisions", json={"label": "A"}, trust_env=False).raise_for_status()
+    httpx.delete(f"{api}/axes/3", trust_env=False).raise_for_status()
+    stop = {"emergency_stop": {"torque_Nm": 60}}
+    httpx.patch(f"{api}/axes/1", json={"application": stop}, trust_env=False).raise_for_status()
+    common = {"tolerances": {"torque_Nm": {"percent": 5}}}
+    httpx.patch(api, json={"common": common}, trust_env=False).raise_for_status()
+    return machine
+
+
+@pytest.mark.parametrize("width", [1440, 1024, 390])
+@pytest.mark.parametrize("dark", [False, True])
+def test_what_changed_since_the_revision_stands_in_the_table_and_beside_it(
+    visitor: Visitor, revised: str, width: int, dark: bool
+) -> None:
+    page = visitor.open(f"{revised}?show=changed", width, dark=dark, touch=width < 600)
+
+    beside = page.get_by_role("region", name="Changed since revision A")
+    expect(beside).to_contain_text("Removed: Pallet lift")
+    expect(beside.get_by_role("listitem").filter(has_text="Infeed belt")).to_contain_text("60 Nm")
+    expect(page.locator("#axis-1 + .since-row")).to_contain_text("HPN-")
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("script", [True, False])
+def test_an_axis_is_added_without_leaving_the_table(visitor: Visitor, machine: str, script: bool) -> None:
+    page = visitor.open(machine, script=script)
+    page.get_by_label("New axis").fill("Lift")
+    page.get_by_role("combobox", name="with the values of").select_option("Infeed belt")
+    page.get_by_role("button", name="Add axis").click()
+
+    expect(page.get_by_role("row", name="Lift")).to_contain_text("HPN-")
+    expect(page.get_by_role("link", name="Open Lift")).to_be_visible()
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_text("Undone.")).to_be_visible()
+    expect(page.get_by_role("row", name="Lift")).to_have_count(1)  # Pallet lift
+
+
+@pytest.mark.parametrize("width", [1440, 390])
+def test_common_tolerances_are_typed_beside_the_common_values(visitor: Visitor, revised: str, width: int) -> None:
+    page = visitor.open(f"{revised}?edit=common", width, touch=width < 600)
+    torque = page.get_by_label("Tolerance: Torque", exact=True)
+    expect(torque).to_have_value("5 %")
+    torque.fill("+8 −2")
+    page.get_by_label("by the worst case").check()
+    expect(page.locator("#every-axis .effect")).to_contain_text("take")
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    assert violations(page) == []
+    page.get_by_role("button", name="Apply to 3 axes").click()
+
+    expect(page.locator("#every-axis")).to_contain_text("+8")
+    page.goto(f"{page.url.partition('?')[0]}/axes/1")
+    expect(page.locator("#f-tol_T")).to_have_attribute("placeholder", "+8 % −2 %")
+    expect(page.get_by_role("checkbox", name="by the worst case")).to_be_disabled()
+    page.get_by_role("button", name="Not for this axis").last.click()
+    expect(page.get_by_role("list", name="Tolerances of the machine")).to_contain_text("not for this axis")
+    assert violations(page) == []
+
+
+def test_a_long_change_shows_its_count_and_is_stopped_without_a_trace(visitor: Visitor, server: str) -> None:
+    phases = [{"torque_Nm": 21, "speed_rpm": 150, "duration_s": 0.3}] * 8
+    tolerances = {"torque_Nm": {"percent": 5}, "speed_rpm": {"percent": 3}, "duration_s": {"percent": 2}}
+    axes = [{"name": f"A{k}", "application": {"duty_cycle": {"phases": phases, "pause_s": 0.4}}} for k in range(2000)]
+    body = {"axes": axes, "common": {"tolerances": tolerances}}
+    machine = str(httpx.post(f"{server}/api/v1/machines", json=body, trust_env=False, timeout=60).json()["url"])
+    page = visitor.open(f"{machine}?edit=common")
+    page.get_by_label("Maximum utilisation").fill("0.5")
+    apply, work = page.get_by_role("button", name="Apply to 2"), page.get_by_role("region", name="Sizing again")
+    expect(apply).to_be_visible()
+
+    apply.click()
+    expect(work).to_contain_text("of 2")
+    work.get_by_role("button", name="Stop").click()
+
+    expect(page.get_by_text("Stopped: nothing was changed")).to_be_visible()
+    expect(work).to_be_hidden()
+    kept = httpx.get(f"{server}/api/v1{machine}?fields=common", trust_env=False).json()
+    assert "requirements" not in kept["common"]
+    expect(page.get_by_label("Maximum utilisation")).to_have_value("0.5")
+    apply.click()
+    expect(page.get_by_text("Changed.")).to_be_visible()

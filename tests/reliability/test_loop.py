@@ -162,7 +162,7 @@ def of_machines(saved: str) -> Iterator[Hostile]:
     yield Hostile("GET", f"{page}/axes/1?{LINK}")
     for path in ("axes/1", "axes/1/save", "change", "revisions"):
         yield Hostile("POST", f"{page}/{path}", PAIRS, FORM)
-    for path in ("change", "kinds", "revisions"):
+    for path in ("change", "kinds", "since", "revisions"):
         yield Hostile("GET", f"{page}/{path}?search={'a' * 10_000}")
     yield Hostile("GET", f"/selections/{saved}/revisions?from={'a' * 10_000}")
     yield Hostile("POST", f"/selections/{saved}/revisions", PAIRS, FORM)

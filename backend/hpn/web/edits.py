@@ -8,14 +8,15 @@ import msgspec
 from starlette.requests import Request
 
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import AxisQuestion, answers
+from hpn.documents.answers import AxisQuestion
 from hpn.documents.axis import Axis
 from hpn.documents.gears import Placed, gears_of
 from hpn.documents.kinds import MachineKinds, Sought, kinds_of
 from hpn.documents.merge import resolve
 from hpn.store import AxisDraft, Change, Machine, SavedAxis
-from hpn.web.columns import columns_of, common_of, draft_of, json_of, own_of, resolved, without_of
+from hpn.web.columns import columns_of, common_of, draft_of, drafts_of, json_of, own_of, resolved, without_of
 from hpn.web.door.problems import Problem
+from hpn.web.long_work import answers_in_steps
 from hpn.web.machines import answered, apply, author_of, no_axis, patched
 
 Json = dict[str, Any]
@@ -63,8 +64,8 @@ def drafted(
     axes: list[tuple[SavedAxis, dict[str, Any]]], common: Mapping[str, Any], catalogue: Catalogue
 ) -> list[AxisDraft]:
     """Axes with other own values, all answered together."""
-    questions = [AxisQuestion(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes]
-    replies = answers(questions, catalogue)
+    questions = (AxisQuestion(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes)
+    replies = answers_in_steps(questions, len(axes), catalogue)
     return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, replies, strict=True)]
 
 
@@ -212,6 +213,21 @@ def plan_copies(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> 
     return Change(machine.version, by, new=[AxisDraft(**{n: getattr(axis, n) for n in same}) for axis in axes])
 
 
+def plan_addition(
+    machine: Machine, name: str | None, like: SavedAxis | None, catalogue: Catalogue, by: str | None
+) -> Change:
+    """One more axis behind the others: without values of its own, or with those of another axis.
+
+    Raises ValidationError for a name that can't be.
+    """
+    if like is None:
+        new = drafts_of([Axis(name=name)], common_of(machine), catalogue)
+    else:
+        copy = plan_copies(machine, [like], by).new[0]
+        new = [replace(copy, name=Axis(name=name).name or like.name)]
+    return Change(machine.version, by, new=new)
+
+
 def plan_removal(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> tuple[Change, Undo]:
     """Axes go; their numbers bring them back."""
     gone = [(axis.number, axis.version) for axis in axes]
@@ -239,7 +255,8 @@ def plan_undo(
     if undo.added:
         return plan_removal(machine, [there[number] for number in undo.added if number in there], by)
     common = common_of(machine)
-    replies = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone], catalogue)
+    questions = (AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone)
+    replies = answers_in_steps(questions, len(gone), catalogue)
     back = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, replies, strict=True)]
     return Change(machine.version, by, restored=back), Undo(added=tuple(number for number, _ in back))
 

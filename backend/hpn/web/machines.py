@@ -13,7 +13,7 @@ from hpn import ENGINE_VERSION
 from hpn.application import InputError
 from hpn.application.faults import Fault
 from hpn.catalogue import Catalogue
-from hpn.documents.answers import AxisQuestion, answers
+from hpn.documents.answers import AxisQuestion
 from hpn.documents.axis import MOST_AXES, MOST_PHASES, MOST_REVISIONS
 from hpn.engine.selection import encode as encode_selection
 from hpn.engine.selection import select
@@ -27,6 +27,7 @@ from hpn.web.door.conditions import etag_of, idempotency_key, require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
+from hpn.web.long_work import answers_in_steps, begin_to_save
 from hpn.words.wording import N_, Sentence
 
 LIMITS = Limits(MOST_AXES, MOST_PHASES, MOST_REVISIONS)
@@ -110,6 +111,7 @@ async def apply(
         machine = await editable(request, id, numbers)
         few = len(machine.items) <= FEW_AXES
         made = await compute(request, "pages" if few else "batches", make, machine)
+        begin_to_save()
         done = await guarded(request.app.state.store.change(id, made, LIMITS, once))
         if done is not None:
             note(request, machine=id)
@@ -172,10 +174,10 @@ def require_document(request: Request, machine: Machine) -> None:
 
 def answered(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) -> list[tuple[int, int, Answer]]:
     """Answers of the axes of a document under common values, as a change has them."""
-    questions = [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in machine.items]
+    questions = (AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in machine.items)
+    replies = answers_in_steps(questions, len(machine.items), catalogue)
     return [
-        (axis.number, axis.version, columns_of(answer))
-        for axis, answer in zip(machine.items, answers(questions, catalogue), strict=True)
+        (axis.number, axis.version, columns_of(answer)) for axis, answer in zip(machine.items, replies, strict=True)
     ]
 
 

@@ -1,5 +1,6 @@
 """The page of an axis: the workbench with its machine above it, saving it back, and what two people meant by it."""
 
+from dataclasses import replace
 from typing import Any
 
 from fastapi import APIRouter
@@ -23,6 +24,7 @@ from hpn.web.machines import axis_of, found
 from hpn.web.pages import calculator
 from hpn.web.pages.axis_conflict import conflict_of
 from hpn.web.pages.axis_view import AxisView, Neighbours, stored_pairs, values_of, view_of
+from hpn.web.pages.machine import may_change, require_key_to_edit
 from hpn.web.pages.rendering import or_reason, page, reason
 
 REASON = "axis_refused.html"
@@ -43,13 +45,14 @@ async def show_posted_axis(request: Request) -> Response:
 
 async def _shown(request: Request, pairs: Pairs) -> Response:
     machine, axis = await axis_of(request, request.path_params["id"], _number(request))
+    require_key_to_edit(request, machine)
     around = await _neighbours(request, machine, axis)
     return await compute(request, "pages", _responded, request, machine, axis, around, pairs)
 
 
 def _responded(request: Request, machine: Machine, axis: SavedAxis, neighbours: Neighbours, pairs: Pairs) -> Response:
     form, view = view_of(machine, axis, neighbours, pairs, request.app.state.catalogue)
-    return calculator.respond(request, form, axis=view)
+    return calculator.respond(request, form, axis=replace(view, may_change=may_change(request, machine)))
 
 
 def _number(request: Request) -> int:

@@ -3,16 +3,19 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 from urllib.parse import parse_qsl, urlencode
 
 from pydantic import ValidationError
 
+from hpn.account.over_tolerance import ToleranceLine, line_of
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import OrderingCode, ordering_code, read_ordering_code
 from hpn.documents.axis import Axis
-from hpn.documents.common import COMMON, flat, is_common
+from hpn.documents.common import COMMON, Common, flat, is_common
+from hpn.documents.common import TOLERANCE as COMMON_TOLERANCE
 from hpn.documents.merge import Resolved, resolve
 from hpn.links.row_symbols import MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.links.rows import TEXT, TOLERANCE
@@ -21,27 +24,30 @@ from hpn.links.writer import to_link
 from hpn.store import Machine, SavedAxis
 from hpn.tables.numbers import read_value
 from hpn.web.columns import common_of, own_of, without_of
+from hpn.web.door.visit import current
 from hpn.web.form import link_reader
+from hpn.web.form.common import OF_TOLERANCE, form_of
 from hpn.web.form.form import Form
-from hpn.web.form.given import FieldProblem, Pairs
+from hpn.web.form.given import FIRST_TOLERANCE, FieldProblem, Pairs
 from hpn.web.form.own_part import carried_over, pairs_of_own, written
 from hpn.web.form.refusals import refusal_of
+from hpn.web.form.tolerance_fields import EXACT, INPUT_OF
 from hpn.words.wording import Sentence
 
 Json = dict[str, Any]
 
-WITHOUT, VERSION, OPENED, PLACE = "wo", "v", "opened", "axis"
+WITHOUT, VERSION, OPENED, PLACE, EDIT = "wo", "v", "opened", "axis", "edit"
 LABELS = ("name", "quantity", "note")
-OF_AXIS = frozenset((WITHOUT, VERSION, OPENED, PLACE, *LABELS))
+OF_AXIS = frozenset((WITHOUT, VERSION, OPENED, PLACE, EDIT, *LABELS))
 """Parameters of an axis beside those of its application: paths that it goes without, its labels, and what it was when
-somebody opened it, as its version and as its own part.
+somebody opened it, as its version and as its own part, and the step that asks for the key.
 """
 
 CHOSEN = ("gear", "order_output", "order_motor")
 """Parameters that make its ordering code."""
 
 _OWN = {*PHASE_BY_NAME, *MOVE_BY_NAME, *BY_NAME, TEXT, TOLERANCE, WITHOUT}
-_PRESS = re.compile(r"(without|common):([A-Za-z0-9]{1,8})")
+_PRESS = re.compile(r"(without|common):([A-Za-z0-9]{1,8}|tolerances\.[A-Za-z0-9_.]{1,100})")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +58,24 @@ class Neighbours:
     next: SavedAxis | None = None
 
 
+class CommonTolerance(NamedTuple):
+    """A tolerance of the machine, and whether it holds for an axis: not where that goes without, or has its own."""
+
+    path: str
+    line: ToleranceLine
+    is_left: bool
+    is_not_asked: bool
+    is_own: bool
+
+
 @dataclass(frozen=True)
 class AxisView:
     """An axis with what somebody has typed.
 
     `labels` are name, quantity and note as typed, `own` its own part and `without` the names of common values that do
     not hold for it; `typed` are these and the ordering code as pairs, `opened` the same of the axis as it was opened,
-    None where nobody knows that any more, and `version` counts its changes until then.
+    None where nobody knows that any more, and `version` counts its changes until then. `may_change` is False for a
+    reader who may not save it back.
     """
 
     machine: Machine
@@ -71,6 +88,7 @@ class AxisView:
     typed: tuple[tuple[str, str], ...]
     opened: tuple[tuple[str, str], ...] | None
     version: int
+    may_change: bool = True
 
     @property
     def place(self) -> str:
@@ -91,7 +109,27 @@ class AxisView:
     def common(self) -> Mapping[str, Any]:
         """Common values of its machine by the names of links."""
         found = ((BY_PATH.get(tuple(path.split("."))), value) for path, value in flat(common_of(self.machine)))
-        return {symbol.name: value for symbol, value in found if symbol}
+        return {symbol.name: _shown(value) for symbol, value in found if symbol}
+
+    @property
+    def common_tolerances(self) -> list[CommonTolerance]:
+        """Tolerances of its machine that it may have, each with its place beside the inputs."""
+        own = self.own.get("tolerances") or {}
+        return [
+            CommonTolerance(
+                path, line_of(name, each), path in self.without, path in self.resolved.not_asked, name in own
+            )
+            for name, each in (Common.model_validate(common_of(self.machine)).tolerances or {}).items()
+            for path in [f"{COMMON_TOLERANCE}{name}"]
+        ]
+
+    @cached_property
+    def tolerances(self) -> Mapping[str, str]:
+        """Tolerances that it takes from its machine as the fields show them, by the names of fields."""
+        absent = {each.path for each in self.common_tolerances if each.is_left or each.is_not_asked}
+        values = {path: value for path, value in flat(common_of(self.machine)) if path not in absent}
+        texts = form_of(values, current(), has_tolerances=True).texts
+        return {field: texts[field] for field in OF_TOLERANCE if field in texts}
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -168,6 +206,9 @@ def view_of(
     if not any(name in _OWN for name, _ in pairs):
         pairs = [*(pair for pair in stored if pair[0] not in dict(pairs)), *pairs]
     pairs, focus = _pressed(pairs)
+    if common_of(machine).get("tolerances"):  # which have fields, and count whatever is said of its own
+        pairs = [pair for pair in pairs if pair[0] != EXACT]
+        pairs += [] if any(name in INPUT_OF or name == TOLERANCE for name, _ in pairs) else [(FIRST_TOLERANCE, "")]
     given = dict(reversed(pairs))
     without = tuple(dict.fromkeys(text for name, text in pairs if name == WITHOUT and _path_of(text)))
     labels = {name: given.get(name, dict(stored).get(name, "")).strip() for name in LABELS}
@@ -207,11 +248,23 @@ def _pressed(pairs: Pairs) -> tuple[Pairs, str | None]:
     """Pairs after the buttons of common values, and the field to go on from."""
     focus = None
     for _, text in [pair for pair in pairs if pair[0] == "do"]:
-        if (press := _PRESS.fullmatch(text)) and press[2] in BY_NAME:
-            name, focus = press[2], f"f-{press[2]}"
-            pairs = [pair for pair in pairs if pair != ("do", text) and pair[0] != name and pair != (WITHOUT, name)]
+        if (press := _PRESS.fullmatch(text)) and (field := _field_of(press[2])):
+            name, focus = press[2], f"f-{field}"
+            pairs = [pair for pair in pairs if pair != ("do", text) and pair[0] != field and pair != (WITHOUT, name)]
             pairs += [(WITHOUT, name)] if press[1] == "without" else []
     return pairs, focus
+
+
+def _field_of(name: str) -> str | None:
+    """Name of the field of a common value, or of a tolerance by its path; None for any other text."""
+    if name in BY_NAME:
+        return name
+    return next((field for field, path in OF_TOLERANCE.items() if path == name), name if is_common(name) else None)
+
+
+def _shown(value: Any) -> Any:
+    """A common value as the choices of a field have it."""
+    return str(int(value)) if isinstance(value, bool) else value
 
 
 def _without_blanks(document: Json) -> Json:

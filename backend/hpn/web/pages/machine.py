@@ -27,13 +27,15 @@ from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import PoolName, compute, pool_of, while_present
 from hpn.web.door.problems import Problem, needs
-from hpn.web.form.common import BY_SYMBOL, FIRST
+from hpn.web.form.common import BY_SYMBOL, FIRST, FIRST_TOLERANCES, OF_TOLERANCE
+from hpn.web.form.tolerance_fields import INPUT_OF
 from hpn.web.freezing import revision
 from hpn.web.machines import FEW_AXES, require_seen
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.machine_editing import OF_MANY, Editing, opened_common
 from hpn.web.pages.machine_rows import opened
-from hpn.web.pages.machine_view import ADDRESS, SHOWN, Chosen, MachineView
+from hpn.web.pages.machine_since import Since, since_of
+from hpn.web.pages.machine_view import ADDRESS, REASON, SHOWN, Chosen, MachineView
 from hpn.web.pages.rendering import or_reason, page, reason
 from hpn.web.pages.revisions_view import next_revision
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
@@ -49,10 +51,10 @@ MEDIA_TYPES = {
 }
 """Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
 
-REASON = "machine_refused.html"
-"""Page that says why there is nothing to show."""
-
 CHANGES_ON_PAGE = 100
+OF_WORST_CASE = ("uw", "ot")
+"""Common values that say how gears are judged over tolerances, which stand beside these."""
+
 SAVED_MEANWHILE = N_("This machine has since been saved under other names. Open it again, then rename it.")
 GONE = N_("There is no such machine. An unsaved machine is kept for a day.")
 
@@ -81,8 +83,12 @@ EMPTY = TitleForm(dict.fromkeys(TITLE_BLOCK, ""))
 
 @or_reason(REASON)
 async def show(request: Request) -> Response:
-    """A machine: counts, and its axes as the address filters and sorts them; `edit=common` opens its common values."""
+    """A machine: counts, and its axes as the address filters and sorts them; `edit=common` opens its common values.
+
+    Where a key is needed to change it, `edit` is the step that asks for the key.
+    """
     saved = await _found(request)
+    require_key_to_edit(request, saved)
     if label := request.query_params.get("revision"):
         return await _frozen(request, saved, label)
     editing = opened_common(saved) if request.query_params.get("edit") == "common" else Editing()
@@ -92,11 +98,10 @@ async def show(request: Request) -> Response:
 async def shown(request: Request, saved: Machine, status: int, form: TitleForm, editing: Editing) -> Response:
     """The page of a machine with the form that saves it, and with what is changed of it."""
     latest = await request.app.state.store.revisions(saved.id) if saved.revisions else []
-    since = latest[0].created if latest else None
-    view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params), since)
+    view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params))
     today = await _today(request, saved)
     values = {"form": form, "today": today, "editing": editing, "may_change": may_change(request, saved)}
-    values |= {"line": None} | next_revision(latest)
+    values |= {"line": None, "since": await since_of(request, saved, latest)} | next_revision(latest)
     return await compute(request, "pages", _page, request, view, status, values)
 
 
@@ -109,7 +114,7 @@ async def _frozen(request: Request, saved: Machine, label: str) -> Response:
     few: PoolName = "pages" if line.axes <= FEW_AXES else "batches"
     machine = await compute(request, few, lambda: thawed(saved, line, decode(content)))
     view = MachineView(machine, catalogue, replace(Chosen.of(request.query_params), revision=line.label))
-    values = {"form": EMPTY, "today": None, "editing": Editing(), "may_change": False, "line": line}
+    values = {"form": EMPTY, "today": None, "editing": Editing(), "may_change": False, "line": line, "since": None}
     return await compute(request, few, _page, request, view, 200, values)
 
 
@@ -118,7 +123,15 @@ def may_change(request: Request, saved: Machine) -> bool:
     return not request.app.state.gate.has_keys or request.state.api_key in (ADMIN, saved.owner or ADMIN)
 
 
+def require_key_to_edit(request: Request, saved: Machine) -> None:
+    """Have `edit` in an address ask for the key, where one is needed to change a machine: Problem 401 and 403."""
+    if "edit" in request.query_params and not may_change(request, saved):
+        request.app.state.gate.require_owner(request, saved.owner)
+
+
 def _page(request: Request, view: MachineView, status: int, values: Mapping[str, Any]) -> Response:
+    since: Since | None = values["since"]
+    view = replace(view, changed_axes=since.changed if since else frozenset())
     rows = [*view.rows, *([view.top] if view.top else [])]
     return page(
         request,
@@ -133,7 +146,10 @@ def _page(request: Request, view: MachineView, status: int, values: Mapping[str,
         most_changes=CHANGES_ON_PAGE,
         suffixes=tuple(MEDIA_TYPES),
         first_fields=FIRST,
-        common_fields=tuple(BY_SYMBOL),
+        common_fields=tuple(name for name in BY_SYMBOL if name not in OF_WORST_CASE),
+        of_worst_case=OF_WORST_CASE,
+        first_tolerances=FIRST_TOLERANCES,
+        tolerance_fields=tuple(field for field in OF_TOLERANCE if INPUT_OF[field] not in BY_SYMBOL),
         many_fields=OF_MANY,
         **values,
     )

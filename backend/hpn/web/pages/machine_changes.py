@@ -2,8 +2,9 @@
 before. What is changed, and what for, is `hpn.web.edits`, which REST uses, too.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import msgspec
@@ -28,6 +29,7 @@ from hpn.web.edits import (
     Plan,
     Undo,
     named,
+    plan_addition,
     plan_common,
     plan_copies,
     plan_kinds,
@@ -37,8 +39,9 @@ from hpn.web.edits import (
 )
 from hpn.web.form import common as fields
 from hpn.web.form.given import FieldProblem
+from hpn.web.long_work import EVENTS, CountedAnswer, given_up_at_end
 from hpn.web.machines import FEW_AXES, apply, author_of, editable, found
-from hpn.web.pages.machine import EMPTY, REASON, shown
+from hpn.web.pages.machine import EMPTY, shown
 from hpn.web.pages.machine_editing import (
     MOST_UNDONE,
     QUANTITY,
@@ -49,13 +52,14 @@ from hpn.web.pages.machine_editing import (
     patch_in,
     values_in,
 )
-from hpn.web.pages.machine_view import ADDRESS
+from hpn.web.pages.machine_view import ADDRESS, REASON
 from hpn.web.pages.rendering import or_reason
 from hpn.words.wording import N_, Sentence
 
 MARK_SOME = N_("Mark the axes first.")
 NOTHING_OTHER = N_("Nothing is changed yet.")
 CHANGED = N_("Changed.")
+ADDED = N_("Added.")
 UNDONE = N_("Undone.")
 OVERTAKEN = N_(
     "Somebody else has changed this since you opened the page. The table shows theirs; yours is still in the fields, "
@@ -69,9 +73,19 @@ NOT_UNDONE = N_("Not undone: somebody else has changed the same since. The table
 
 @or_reason(REASON)
 async def change(request: Request) -> Response:
-    """Says the effect of a change, or makes it, and shows the machine as it then is."""
+    """Says the effect of a change, or makes it, and shows the machine as it then is; with the count of its axes on the
+    way for who takes events.
+    """
     require_same_origin(request)
     sent = Sent.of(pairs_of(await read_form(request)))
+    await editable(request, request.path_params["machine"], [])
+    if EVENTS in request.headers.get("accept", ""):
+        return CountedAnswer(request, lambda: or_reason(REASON)(partial(_answered, sent=sent))(request))
+    with given_up_at_end():
+        return await _answered(request, sent)
+
+
+async def _answered(request: Request, sent: Sent) -> Response:
     id = request.path_params["machine"]
     await found(request, id, [], "machine")
     try:
@@ -93,6 +107,8 @@ async def _changed(request: Request, id: str, sent: Sent) -> Editing:
         return await _kinds_taken(request, id, sent)
     if sent.target == "common":
         return await _common_changed(request, id, sent)
+    if sent.do == "add":
+        return await _axis_added(request, id, sent)
     if not sent.seen and not sent.everything:
         return Editing(sent, said=Sentence(MARK_SOME), is_refused=True, past=sent.past)
     if sent.do in ("copy", "remove"):
@@ -139,8 +155,7 @@ async def _axes_changed(request: Request, id: str, sent: Sent) -> Editing:
 
 async def _common_changed(request: Request, id: str, sent: Sent) -> Editing:
     catalogue: Catalogue = request.app.state.catalogue
-    names = list(fields.BY_SYMBOL)
-    form, values = await compute(request, "pages", fields.read, sent.pairs, names, current())
+    form, values = await compute(request, "pages", fields.read, sent.pairs, list(fields.PATHS), current())
     editing = Editing(sent, common=form, before=sent.before)
     if form.problems:
         return replace(editing, past=sent.past, said=form.problems[0].message, is_refused=True)
@@ -183,8 +198,26 @@ async def _set_changed(request: Request, id: str, sent: Sent) -> Editing:
         return made
 
     numbers = await apply(request, id, make)
-    undo = undone[-1] if undone else Undo(added=tuple(numbers))
-    return Editing(said=Sentence(CHANGED), past=_with(sent.past, undo))
+    if undone:
+        return Editing(said=Sentence(CHANGED), past=_with(sent.past, undone[-1]))
+    return _more(numbers, sent)
+
+
+def _more(numbers: Sequence[int], sent: Sent) -> Editing:
+    """The page after axes were added."""
+    return Editing(said=Sentence(ADDED), added=tuple(numbers), past=_with(sent.past, Undo(added=tuple(numbers))))
+
+
+async def _axis_added(request: Request, id: str, sent: Sent) -> Editing:
+    """The page after one more axis: without values of its own, or with those of another."""
+    fields, catalogue = dict(sent.pairs), request.app.state.catalogue
+    name, number = fields.get("name", "").strip() or None, fields.get("like", "")
+
+    def make(machine: Machine) -> Change:
+        like = named(machine, [int(number)])[0] if is_number(number) else None
+        return plan_addition(machine, name, like, catalogue, author_of(request, machine))
+
+    return _more(await apply(request, id, make, [int(number)] if is_number(number) else []), sent)
 
 
 def _marked(machine: Machine, sent: Sent) -> list[SavedAxis]:
@@ -233,25 +266,28 @@ async def _overtaken(request: Request, id: str, sent: Sent, error: OvertakenErro
         return replace(patch_in(sent)[0], said=told.said, is_refused=True, overtaken=told.overtaken, past=sent.past)
     machine = await found(request, id, [], "machine")
     before, now = values_in(sent.before), dict(flat(common_of(machine)))
-    form, values = fields.read(sent.pairs, list(fields.BY_SYMBOL), current())
+    form, values = fields.read(sent.pairs, list(fields.PATHS), current())
     yours = fields.changed(before, values)
     theirs = tuple(
-        FieldProblem(name, None, Sentence(THEIRS, {"value": _told(now.get(path))}))
-        for name, (path, _) in fields.BY_SYMBOL.items()
+        FieldProblem(name, None, Sentence(THEIRS, {"value": _told(name, now)}))
+        for name, path in fields.PATHS.items()
         if path in yours and now.get(path) not in (before.get(path), yours[path])
     )
     mixed = {path: value for path, value in {**now, **yours}.items() if value is not None}
-    form = replace(fields.form_of(mixed, current()), problems=theirs)
+    form = replace(fields.form_of(mixed, current(), has_tolerances=True), problems=theirs)
     return replace(told, common=form, before=packed(json_of(now)))
 
 
 THEIRS = N_("somebody else has set {value} since")
 
 
-def _told(value: Any) -> str:
-    if isinstance(value, list):
-        return ", ".join(map(str, value))
-    return "–" if value is None else f"{value:g}" if isinstance(value, int | float) else str(value)
+def _told(name: str, values: Mapping[str, Any]) -> str:
+    """A common value as a field shows it."""
+    path = fields.PATHS[name]
+    if path not in values:
+        return "–"
+    form = fields.form_of({path: values[path]}, current(), has_tolerances=True)
+    return ", ".join(form.lists.get(name, ())) or form.texts.get(name, "")
 
 
 async def lead_back(request: Request) -> Response:

@@ -78,6 +78,7 @@ class Editing:
     said: Sentence | None = None
     is_refused: bool = False
     overtaken: tuple[int, ...] = ()
+    added: tuple[int, ...] = ()
     past: tuple[str, ...] = ()
 
 
@@ -87,7 +88,7 @@ class Editing:
 def opened_common(machine: Machine) -> Editing:
     """The form of the common values as they are."""
     values = dict(flat(common_of(machine)))
-    return Editing(common=fields.form_of(values, current()), before=packed(json_of(values)))
+    return Editing(common=fields.form_of(values, current(), has_tolerances=True), before=packed(json_of(values)))
 
 
 def values_in(carried: str) -> dict[str, Any]:

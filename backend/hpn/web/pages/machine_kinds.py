@@ -18,8 +18,8 @@ from hpn.web.door.problems import needs
 from hpn.web.door.visit import current
 from hpn.web.edits import kinds_in
 from hpn.web.machines import found
-from hpn.web.pages.machine import REASON, may_change
-from hpn.web.pages.machine_view import ADDRESS
+from hpn.web.pages.machine import may_change
+from hpn.web.pages.machine_view import ADDRESS, REASON
 from hpn.web.pages.rendering import or_reason, page
 
 

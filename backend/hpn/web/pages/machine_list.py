@@ -13,9 +13,8 @@ from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem, needs
 from hpn.web.form.linked import onward
-from hpn.web.pages.machine import REASON
 from hpn.web.pages.machine_upload import WORDS, Upload
-from hpn.web.pages.machine_view import ADDRESS
+from hpn.web.pages.machine_view import ADDRESS, REASON
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saved_list import LINES_ON_PAGE, NO_SUCH_PART
 from hpn.web.todays import versions_of

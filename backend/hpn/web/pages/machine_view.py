@@ -1,8 +1,7 @@
 """The working copy of a machine as its page shows it: its axes as the address chooses them, and what they come to."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
 from functools import cached_property
 from typing import Any, NamedTuple
 from urllib.parse import urlencode
@@ -11,16 +10,17 @@ from hpn.account.over_tolerance import ToleranceLine, line_of
 from hpn.account.readings import Life, life_of
 from hpn.catalogue import Catalogue
 from hpn.documents.axis import Json
-from hpn.documents.common import COMMON, Common, flat
+from hpn.documents.common import Common
 from hpn.documents.gears import GearOrder, Placed, gears_of
-from hpn.engine.checks import allowed
-from hpn.links.symbol import Symbol
-from hpn.links.symbols import BY_PATH
 from hpn.store import Machine, SavedAxis
-from hpn.web.columns import common_of, own_of, without_of
+from hpn.web.columns import common_of
+from hpn.web.pages.machine_values import FieldValue, bound_of, common_values, own_values
 from hpn.words.wording import N_
 
 ADDRESS = "/machines"
+REASON = "machine_refused.html"
+"""Page that says why there is nothing to show."""
+
 ROWS_ON_PAGE = 100
 
 SHOWN = {"": N_("All"), "todo": N_("To do"), "changed": N_("Changed")}
@@ -92,6 +92,7 @@ ORDERS: Mapping[str, Callable[[MachineRow], Any]] = {
     "utilisation": _figure("utilisation"),
     "check": _figure("governing_check"),
     "life": lambda row: row.life and row.life.hours,
+    "worst": _figure("worst_utilisation"),
     "frequency": _figure("natural_frequency_Hz"),
 }
 """Columns that axes are sorted by, by the names of an address."""
@@ -138,14 +139,14 @@ class Chosen:
         number = int(part) if part.isascii() and part.isdigit() and len(part) < 6 else 1
         return cls(**given, part=max(number, 1))
 
-    def out_of(self, rows: Sequence[MachineRow], since: datetime | None) -> list[MachineRow]:
-        """Rows that are shown, in their order."""
+    def out_of(self, rows: Sequence[MachineRow], changed: Collection[int]) -> list[MachineRow]:
+        """Rows that are shown, in their order; `changed` are the numbers of those that differ from a revision."""
         word = self.search.strip().casefold()
         found = [
             row
             for row in rows
             if (self.show != "todo" or row.status != "suitable")
-            and (self.show != "changed" or is_changed(row, since))
+            and (self.show != "changed" or row.axis.number in changed)
             and (not self.gear or row.gear == self.gear)
             and any(word in text.casefold() for text in (row.name, row.gear or "", row.axis.ordering_code or ""))
         ]
@@ -162,65 +163,6 @@ class Chosen:
         return f"{path}?{urlencode(pairs)}" if pairs else path
 
 
-def is_changed(row: MachineRow, since: datetime | None) -> bool:
-    """True for an axis that was changed after the latest revision; never without one."""
-    return since is not None and row.axis.updated > since
-
-
-class FieldValue(NamedTuple):
-    """A value of a field, as a common one or an axis's own; None where a common value does not hold for the axis."""
-
-    symbol: Symbol
-    value: Any
-
-
-SHORT = ("requirements.utilisation", "requirements.life_h", "output_load.life_h", "output_load.load_coefficient")
-IN_ORDER = (*SHORT, *(path for path in COMMON if path not in SHORT))
-"""Fields that may be common, those that most machines have first."""
-
-
-def common_values(common: Mapping[str, Any]) -> list[FieldValue]:
-    """Common values of a machine."""
-    return _shown(dict(flat(common)))
-
-
-def own_values(axis: SavedAxis) -> list[FieldValue]:
-    """Values that an axis has of its own where there might be a common one; None where it does without one."""
-    return _shown({**dict(flat(_parts(own_of(axis)))), **dict.fromkeys(without_of(axis))})
-
-
-def _parts(own: Json) -> Json:
-    """Those parts of an axis's own values that common ones stand in for, whatever else was sent."""
-    return {name: own[name] for name in ("requirements", "output_load", "application_area", "rank_by") if name in own}
-
-
-def _shown(values: Mapping[str, Any]) -> list[FieldValue]:
-    named = ((BY_PATH.get(tuple(path.split("."))), path) for path in IN_ORDER if path in values)
-    return [FieldValue(symbol, _plain(values[path])) for symbol, path in named if symbol is not None]
-
-
-def _plain(value: Any) -> Any:
-    """A value as it can be shown, whatever an axis was sent with: a number, a text, or texts of a list."""
-    if isinstance(value, list):
-        return [str(_plain(each)) for each in value[:20]]
-    if isinstance(value, Mapping):
-        return _plain([f"{name}: {_plain(each)}" for name, each in value.items()])
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return value if value is None else str(value)[:40]
-    return value if abs(value) < LARGEST else "…"
-
-
-LARGEST = 1e15
-"""Number beyond every bound of an input."""
-
-
-def bound_of(row: MachineRow, common: Mapping[str, Any]) -> float:
-    """Largest utilisation with which the governing check of an axis passes."""
-    values = {**dict(flat(common)), **dict.fromkeys(without_of(row.axis)), **dict(flat(_parts(own_of(row.axis))))}
-    u = values.get("requirements.utilisation")
-    return allowed(row.answer["governing_check"], u if isinstance(u, float | int) and 0 < u <= 1 else 1.0)
-
-
 @dataclass(frozen=True)
 class MachineView:
     """A machine with those axes that its page shows."""
@@ -228,8 +170,8 @@ class MachineView:
     machine: Machine
     catalogue: Catalogue
     chosen: Chosen = field(default_factory=Chosen)
-    since: datetime | None = None
-    """Time of the latest revision."""
+    changed_axes: Collection[int] = frozenset()
+    """Numbers of the axes that differ from the latest revision."""
 
     orders = SORTINGS
 
@@ -261,7 +203,7 @@ class MachineView:
     @cached_property
     def found(self) -> list[MachineRow]:
         """Axes that the address chooses."""
-        return self.chosen.out_of(self.all, self.since)
+        return self.chosen.out_of(self.all, self.changed_axes)
 
     @cached_property
     def rows(self) -> list[MachineRow]:
@@ -284,7 +226,7 @@ class MachineView:
     def showing(self, show: str) -> int:
         """Number of axes that a filter shows."""
         if show == "changed":
-            return sum(is_changed(row, self.since) for row in self.all)
+            return len(self.changed_axes)
         return len(self.all) - (self.counts["suitable"] if show == "todo" else 0)
 
     @cached_property
@@ -297,6 +239,11 @@ class MachineView:
     def has_frequency(self) -> bool:
         """True where an axis has a natural frequency."""
         return any(row.answer["natural_frequency_Hz"] is not None for row in self.all)
+
+    @cached_property
+    def has_worst_case(self) -> bool:
+        """True where an axis has tolerances that its gear is judged over."""
+        return any(row.answer["holds"] is not None for row in self.all)
 
     @cached_property
     def order(self) -> GearOrder:
@@ -315,7 +262,11 @@ class MachineView:
 
     def bound(self, row: MachineRow) -> float:
         """Largest utilisation with which the governing check of an axis passes."""
-        return bound_of(row, self.common)
+        return bound_of(row.axis, self.common)
+
+    def worst_bound(self, row: MachineRow) -> float:
+        """The same of its worst case."""
+        return bound_of(row.axis, self.common, in_worst_case=True)
 
     def own(self, row: MachineRow) -> list[FieldValue]:
         """Values that an axis has of its own."""
@@ -330,10 +281,6 @@ class MachineView:
     def tolerances(self) -> list[ToleranceLine]:
         """Common tolerances."""
         return [line_of(path, each) for path, each in (Common.model_validate(self.common).tolerances or {}).items()]
-
-    def is_changed(self, row: MachineRow) -> bool:
-        """True for an axis that was changed after the latest revision."""
-        return is_changed(row, self.since)
 
     @cached_property
     def names(self) -> Mapping[int, str]:

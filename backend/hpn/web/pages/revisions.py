@@ -26,7 +26,7 @@ from hpn.web.door.visit import absolute, current
 from hpn.web.freezing import freeze
 from hpn.web.machines import FEW_AXES, found
 from hpn.web.pages import machine as machine_pages
-from hpn.web.pages.machine_view import MachineView
+from hpn.web.pages.machine_view import REASON, MachineView
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.revisions_view import (
     BLOCK,
@@ -168,13 +168,13 @@ async def _saved(request: Request, kind: DocumentKind) -> Response:
     return RedirectResponse(f"{PLACES[kind]}/{machine.id}/revisions", 303)
 
 
-@or_reason(machine_pages.REASON)
+@or_reason(REASON)
 async def show_of_machine(request: Request) -> Response:
     """Revisions of a machine, and two of them, the working copy or today compared."""
     return await shown(request, await _found(request, "machine"))
 
 
-@or_reason(machine_pages.REASON)
+@or_reason(REASON)
 async def save_of_machine(request: Request) -> Response:
     """Saves the working copy of a machine as a revision."""
     return await _saved(request, "machine")

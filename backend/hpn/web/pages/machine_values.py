@@ -1,0 +1,70 @@
+"""Values of a machine as its page shows them: common ones, an axis's own, and the bound that they set to it."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from hpn.documents.axis import Json
+from hpn.documents.common import COMMON, flat
+from hpn.engine.checks import allowed
+from hpn.links.symbol import Symbol
+from hpn.links.symbols import BY_PATH
+from hpn.store import SavedAxis
+from hpn.web.columns import own_of, without_of
+
+
+class FieldValue(NamedTuple):
+    """A value of a field, as a common one or an axis's own; None where a common value does not hold for the axis."""
+
+    symbol: Symbol
+    value: Any
+
+
+SHORT = ("requirements.utilisation", "requirements.life_h", "output_load.life_h", "output_load.load_coefficient")
+IN_ORDER = (*SHORT, *(path for path in COMMON if path not in SHORT))
+"""Fields that may be common, those that most machines have first."""
+
+
+def common_values(common: Mapping[str, Any]) -> list[FieldValue]:
+    """Common values of a machine."""
+    return _shown(dict(flat(common)))
+
+
+def own_values(axis: SavedAxis) -> list[FieldValue]:
+    """Values that an axis has of its own where there might be a common one; None where it does without one."""
+    return _shown({**dict(flat(_parts(own_of(axis)))), **dict.fromkeys(without_of(axis))})
+
+
+def _parts(own: Json) -> Json:
+    """Those parts of an axis's own values that common ones stand in for, whatever else was sent."""
+    return {name: own[name] for name in ("requirements", "output_load", "application_area", "rank_by") if name in own}
+
+
+def _shown(values: Mapping[str, Any]) -> list[FieldValue]:
+    named = ((BY_PATH.get(tuple(path.split("."))), path) for path in IN_ORDER if path in values)
+    return [FieldValue(symbol, _plain(values[path])) for symbol, path in named if symbol is not None]
+
+
+def _plain(value: Any) -> Any:
+    """A value as it can be shown, whatever an axis was sent with: a number, a text, or texts of a list."""
+    if isinstance(value, list):
+        return [str(_plain(each)) for each in value[:20]]
+    if isinstance(value, Mapping):
+        return _plain([f"{name}: {_plain(each)}" for name, each in value.items()])
+    if isinstance(value, bool):
+        return "1" if value else ""
+    if not isinstance(value, int | float):
+        return value if value is None else str(value)[:40]
+    return value if abs(value) < LARGEST else "…"
+
+
+LARGEST = 1e15
+"""Number beyond every bound of an input."""
+
+
+def bound_of(axis: SavedAxis, common: Mapping[str, Any], *, in_worst_case: bool = False) -> float:
+    """Largest utilisation with which the governing check of an axis passes, as given or in its worst case."""
+    values = {**dict(flat(common)), **dict.fromkeys(without_of(axis)), **dict(flat(_parts(own_of(axis))))}
+    names = ("worst_case_utilisation", "utilisation") if in_worst_case else ("utilisation",)
+    given = (values.get(f"requirements.{name}") for name in names)
+    u = next((each for each in given if isinstance(each, float | int) and 0 < each <= 1), 1.0)
+    return allowed(axis.answer["worst_governing_check" if in_worst_case else "governing_check"], u)
