@@ -46,7 +46,7 @@ STYLES = {
         "print",
         "paper",
     ),
-    **{f"{part}.css": (part,) for part in ("motion", "reading")},
+    **{f"{part}.css": (part,) for part in ("motion", "reading", "pairs")},
     "axis.css": ("trail", "axis"),
     "saved.css": ("selection", "trail", "revisions", "read-only", "paper"),
     "report.css": ("tokens", "app", "tools", "machine-axes", "phone", "print"),

@@ -111,6 +111,10 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield Hostile("PUT", "/api/v1/motor-lists/server", LONG_JSON, JSON)
     yield from (Hostile(method, "/api/v1/motor-lists/" + "a" * 60_000) for method in ("GET", "DELETE"))
     yield Hostile("GET", "/api/v1/motor-lists")
+    yield Hostile("GET", f"/pairs?{LINK}")
+    yield from (Hostile("GET", f"/motor-lists{path}") for path in ("", f"/{'x' * 22}?{LINK}"))
+    for path in ("", f"/{'x' * 22}/save", f"/{'x' * 22}/delete"):
+        yield Hostile("POST", f"/motor-lists{path}", urlencode({"text": TABLE}).encode(), FORM)
     yield Hostile("GET", "/checks/" + "a" * 60_000)
     yield Hostile("GET", "/problems/" + "a" * 60_000)
     yield Hostile("GET", f"/selections/compare?a={saved}&b={saved}")
@@ -160,6 +164,7 @@ def of_machines(saved: str) -> Iterator[Hostile]:
         yield Hostile("GET", f"{machine}/differences{suffix}?from=saved&to=now")
     page = f"/machines/{'x' * 22}"
     yield Hostile("GET", f"{page}/axes/1?{LINK}")
+    yield Hostile("GET", f"{page}/axes/1/pairs?{LINK}")
     for path in ("axes/1", "axes/1/save", "change", "revisions"):
         yield Hostile("POST", f"{page}/{path}", PAIRS, FORM)
     for path in ("change", "kinds", "since", "revisions"):

@@ -153,3 +153,23 @@ def test_pairs_go_by_a_kept_list_and_what_was_taken_stays_when_it_is_gone(api: T
     assert api.get(pair["link"]).status_code == 200
     gone = api.post("/api/v1/pairs", json=asked)
     assert (gone.status_code, gone.json()["errors"][0]["pointer"]) == (422, "/list")
+
+
+TABLE = "Motor;M_N [Nm];J [kg·cm²];I [A]\nA;1.5;0.4;3\nB;2.5;0.8;4\n".encode()
+
+
+def test_a_table_is_kept_as_a_list_by_the_reader_of_tables(client: TestClient) -> None:
+    headers = {"Content-Type": "text/csv"}
+
+    asked = client.post(ADDRESS, params={"name": "Sheet"}, content=TABLE, headers=headers)
+    unnamed = client.post(ADDRESS, params={"answer": "4:skip"}, content=TABLE, headers=headers)
+    kept = client.post(ADDRESS, params={"name": "Sheet", "answer": "4:skip"}, content=TABLE, headers=headers)
+
+    assert asked.status_code == 422 and asked.json()["errors"][0]["detail"] == "What is column “I [A]”?"
+    assert unnamed.status_code == 422 and unnamed.json()["errors"][0]["pointer"] == "/name"
+    assert kept.status_code == 201, kept.text
+    motors = client.get(kept.headers["location"]).json()["motors"]
+    assert [(motor["designation"], motor["rated_torque_Nm"], motor["inertia_kgm2"]) for motor in motors] == [
+        ("A", 1.5, 4e-5),
+        ("B", 2.5, 8e-5),
+    ]

@@ -33,6 +33,15 @@ def client() -> Iterator[TestClient]:
     app.state.pools.close()  # files are read in a process
 
 
+@pytest.fixture(scope="module")
+def keeping(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A client of a service with a store of its own, which nothing else has written."""
+    file = tmp_path_factory.mktemp("pairs") / "store.sqlite3"
+    app = create_app(Settings(database_url=f"sqlite:///{file}", log_level="error"))
+    with TestClient(app) as found:
+        yield found
+
+
 @pytest.fixture(scope="session")
 def document(service: FastAPI) -> dict[str, Any]:
     """The OpenAPI document."""

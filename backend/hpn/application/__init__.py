@@ -13,7 +13,7 @@ from hpn.application.application import (
     RankBy,
 )
 from hpn.application.faults import InputError, Location
-from hpn.application.pairing import MOST_MOTORS, MotorEntry, Pairing
+from hpn.application.pairing import MOST_MOTORS, MotorEntry, Pairing, PairRank
 from hpn.application.requirements import (
     BEARING_LIFE_H,
     LISTED_FIGURES,
@@ -48,6 +48,7 @@ __all__ = [
     "Motor",
     "MotorEntry",
     "OutputLoad",
+    "PairRank",
     "Pairing",
     "RankBy",
     "Requirements",

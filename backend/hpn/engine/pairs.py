@@ -93,6 +93,13 @@ class PairTable:
     resonance_Hz: FloatArray
     limit_Nm: FloatArray
     weight_kg: FloatArray
+    of_gear: FloatArray
+    peak: FloatArray
+
+    @property
+    def fails(self) -> BoolArray:
+        """True for pairs that fail, by their places."""
+        return np.array(self.verdict.ravel() == UNSUITABLE)
 
     def _sorted(self, wish: FloatArray, among: BoolArray) -> PlaceArray:
         """Places of some pairs by ascending wish, NaN last, then by weight, utilisation and names."""
@@ -160,7 +167,11 @@ def _part(
     figures, shape = evaluation.case.figures, evaluation.verdict.shape
     codes = [check.code for check in evaluation.checks]
     own = [place for place, code in enumerate(codes) if code in LOADS]
-    thermal = evaluation.used[codes.index("motor_rated_torque")] if "motor_rated_torque" in codes else np.array(np.nan)
+    beside = [k for k, check in enumerate(evaluation.checks) if check.group == "load" and k not in own]
+    thermal, peak = (
+        evaluation.used[codes.index(code)] if code in codes else np.array(np.nan)
+        for code in ("motor_rated_torque", "motor_peak_torque")
+    )
     inertia = evaluation.case.asked["requirements.motor.inertia_kgm2"]
     weights = np.array([[np.nan if motor.weight_kg is None else motor.weight_kg] for motor in motors])
     resonance = np.broadcast_to(figures.drive_resonance_Hz, shape)
@@ -170,7 +181,9 @@ def _part(
         judged = _with_resonance(*judged, least_Hz / resonance)
     of_motor = np.fmax.reduce(evaluation.used[own], axis=0) if own else np.array(np.nan)
     ratios = inertia_ratio(evaluation.case.duty, gears.columns, inertia)
-    others = (of_motor, thermal, ratios, resonance, figures.motor_torque_limit_Nm, weights + gears.columns.weight_kg)
+    weights = weights + gears.columns.weight_kg
+    of_gear = np.fmax.reduce(evaluation.used[beside], axis=0) if beside else np.array(np.nan)
+    others = (of_motor, thermal, ratios, resonance, figures.motor_torque_limit_Nm, weights, of_gear, peak)
     return (*judged, *(np.array(np.broadcast_to(column, shape)) for column in others))
 
 
@@ -204,15 +217,16 @@ def pairs_of(
         order = order[np.sort(np.unique(order // len(table.gears.rows), return_index=True)[1])]
     needs_inertia = asks_inertia_ratio(wanted.application) or wanted.drive_resonance_Hz is not None
     return Pairs(
-        pairs=list(_pairs(table, order[: wanted.top].tolist(), wanted.application, link_of)),
+        pairs=list(pairs_at(table, order[: wanted.top].tolist(), wanted.application, link_of)),
         failing=table.failing(),
         notices=tuple(notices_on(wanted.application, motors, table.gears, catalogue, needs_inertia=needs_inertia)),
     )
 
 
-def _pairs(
+def pairs_at(
     table: PairTable, places: Sequence[int], application: Application, link_of: Callable[[Application, str], str | None]
 ) -> Iterator[Pair]:
+    """Pairs at some places, in their order."""
     equipped: dict[int, Application] = {}
     for rank, place in enumerate(places, start=1):
         row, column = divmod(place, len(table.gears.rows))

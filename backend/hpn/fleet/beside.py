@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from hpn.catalogue import Catalogue
 from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError, Order
-from hpn.tables.answers import about, answers_of
+from hpn.tables.answers import answered
 from hpn.tables.columns import NO_CHOICES, Choices
 from hpn.tables.files import TableBounds, text_of
 from hpn.tables.reading import Reading, reading_of
@@ -83,9 +83,9 @@ def read_answered(
     content: bytes, wanted: TableBounds, texts: Sequence[str]
 ) -> tuple[MachineReading, tuple[Sentence, ...]]:
     """Reading of a file by answers of a program, and what is wrong with these; no unit is assumed."""
-    answers = answers_of(texts)
-    table = read_machine(content, wanted, answers.whole)
-    if table.reading.table is not None and answers.columns:
-        answers = about(table.reading.table.columns, answers, wanted.inputs)
-        table = read_machine(content, wanted, answers.whole)
-    return table, answers.faults
+    return answered(
+        texts,
+        wanted.inputs,
+        lambda choices: read_machine(content, wanted, choices),
+        lambda read: read.reading.table.columns if read.reading.table else (),
+    )

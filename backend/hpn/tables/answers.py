@@ -1,8 +1,8 @@
 """Answers to the questions about a table as programs give them: `Moment:T`, `3:Nm`, `decimal:,`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from hpn.tables.columns import ANY, SKIP, Choices, Column
 from hpn.tables.inputs import Inputs
@@ -34,6 +34,22 @@ def answers_of(texts: Sequence[str]) -> Answers:
     faults = tuple(_said(NO_ANSWER, text) for text, (name, _) in zip(texts, pairs, strict=True) if not name)
     whole: dict[str, Any] = {name: meaning for name, meaning in pairs if name in NAMES}
     return Answers(Choices(of=ANY, **whole), [pair for pair in pairs if pair[0] and pair[0] not in NAMES], faults)
+
+
+T = TypeVar("T")
+
+
+def answered(
+    given: Sequence[str], inputs: Inputs, read: Callable[[Choices], T], columns_of: Callable[[T], Sequence[Column]]
+) -> tuple[T, tuple[Sentence, ...]]:
+    """A reading by answers of a program, and what is wrong with these: those about columns need a first one."""
+    answers = answers_of(given)
+    found = read(answers.whole)
+    columns = columns_of(found)
+    if columns and answers.columns:
+        answers = about(columns, answers, inputs)
+        found = read(answers.whole)
+    return found, answers.faults
 
 
 def about(columns: Sequence[Column], answers: Answers, inputs: Inputs) -> Answers:

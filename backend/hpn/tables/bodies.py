@@ -84,7 +84,7 @@ class TableBody:
         return replace(self, numbers=self.numbers[:count], rows=self.rows[:count], totals=totals)
 
 
-def body_of(grid: Grid, scales: str = "") -> TableBody:
+def body_of(grid: Grid, scales: str = "", *, named_rows: bool = False) -> TableBody:
     """Rows of a table, the right way round; raises RefusedError where they make no table.
 
     `scales` says which of two numbers counts where a format of a workbook shows another than the cell holds.
@@ -94,7 +94,7 @@ def body_of(grid: Grid, scales: str = "") -> TableBody:
         _require_ungrouped(grid)
     if grid.width > MOST_COLUMNS:
         raise RefusedError(N_("there are more than {most} columns"), most=MOST_COLUMNS)
-    head = head_of(grid)
+    head = head_of(grid, named_rows=named_rows)
     if head.end == len(grid.rows):
         raise _no_numbers(grid)
     apart = _rows_apart(grid, head)

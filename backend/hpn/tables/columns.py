@@ -55,6 +55,9 @@ class Choices:
     scales: str = ""
     loads: str = ""
     rest: str = ""
+    twins: str = ""
+    zeros: str = ""
+    blanks: str = ""
     roles: Mapping[int, str] = field(default_factory=dict)
     units: Mapping[int, str] = field(default_factory=dict)
 
@@ -123,7 +126,7 @@ def _proposed(body: TableBody, place: int, inputs: Inputs) -> Column:
     heading = " ".join(" ".join(text.split()) for text in headings)[:LONGEST]
     cells = [row[place] for row in body.rows if not is_blank(row[place])]
     said = heading_over(headings)
-    kind = inputs.role_over(headings, said) or said.kind
+    kind = inputs.kind_of(headings, said)
     if inputs.has_axes and kind == "t" and said.codes == {"h"}:
         kind = ""  # so many hours may be a phase or a required life
     if not said.name and not inputs.has_axes:

@@ -90,7 +90,9 @@ def upright(grid: Grid) -> Grid:
         return grid
     across = max(_named(row) for row in grid.rows)
     turned = grid.transposed()
-    down = max(_named(row) for row in turned.rows[:MOST_TURNED])
+    down = max(
+        _named(row, with_units=across < 2) for row in turned.rows[:MOST_TURNED]
+    )  # a row below the names has units
     if down < 2:
         return grid
     if across >= 2:
@@ -98,8 +100,11 @@ def upright(grid: Grid) -> Grid:
     return turned
 
 
-def head_of(grid: Grid) -> Head:
-    """Head of an upright table; raises RefusedError where numbers stand above it."""
+def head_of(grid: Grid, *, named_rows: bool = False) -> Head:
+    """Head of an upright table; raises RefusedError where numbers stand above it.
+
+    Where each row begins with a name, one number beside it makes a row below the head.
+    """
     named = [_named(row) for row in grid.rows[: max(1, min(HEAD_ROWS, HEAD_CELLS // grid.width))]]
     if max(named) >= 2:
         bottom = named.index(max(named))
@@ -109,7 +114,9 @@ def head_of(grid: Grid) -> Head:
         last = end - 1
     else:
         end = 0
-        while end < len(grid.rows) and numbers_in(row := grid.rows[end]) < min(2, _filled(row)):
+        while end < len(grid.rows) and numbers_in(row := grid.rows[end]) < min(
+            2, max(_filled(row) - named_rows, named_rows)
+        ):
             end += 1
         several = [k for k in range(end) if _filled(grid.rows[k]) >= min(2, grid.width - 1)]
         last = bottom = several[-1] if several else -1
@@ -132,14 +139,14 @@ def _notes(grid: Grid, places: Sequence[int]) -> tuple[Sentence, ...]:
     return tuple(skipped(grid.numbers[place], " ".join(filter(None, grid.rows[place]))) for place in places)
 
 
-def _named(row: Sequence[str]) -> int:
+def _named(row: Sequence[str], *, with_units: bool = True) -> int:
     """Number of quantities that a row names, by name or by unit."""
     quantities = set()
     for cell in row[:MOST_COLUMNS]:
         heading = heading_of(cell)
         if heading.names_quantity:
             quantities.add(heading.kind or heading.meant)
-        elif heading.kind == UNIT:
+        elif heading.kind == UNIT and with_units:
             measured = quantities_of(heading.unit)
             quantities |= {role for role in REQUIRED if QUANTITIES[role] in measured}
     return len(quantities)

@@ -93,12 +93,16 @@ class Inputs:
         of_axis = (Input(AXIS, AXIS, Named(N_("Axis")), "text"), QUANTITY) if further else ()
         named = (*of_axis, *PHASE, NAME, *further)
         self.by_role: Mapping[str, Input] = {each.role: each for each in named}
-        self.has_axes = bool(further)
+        self.has_axes, self.has_motors = bool(further), False
 
     @property
     def units(self) -> set[str]:
         """Suffixes of the units of all inputs."""
         return {each.unit for each in self.by_role.values()} - {""}
+
+    def kind_of(self, headings: Sequence[str], said: Over) -> str:
+        """Role of a column by the texts above it, else the quantity or the index that they name; blank for neither."""
+        return self.role_over(headings, said) or said.kind
 
     def role_over(self, headings: Sequence[str], said: Over) -> str:
         """Role by the name of an input that all texts above a column make together, or by the same name in each."""

@@ -55,6 +55,7 @@ MISSING = {
     "T": N_("Which column is the torque?"),
     "n": N_("Which column is the speed?"),
     "t": N_("Which column is the duration?"),
+    "mot": N_("Which column names the motor?"),
 }
 
 SHARES = ("u", "eta", "fw")
@@ -161,7 +162,7 @@ class Interpreter:
 
     def ask_columns(self) -> None:
         """Ask for columns without a role or a unit, and for what has no column or two."""
-        of_side = self._ask_side()
+        of_side = self.ask_side()
         for column in self.columns:
             if not column.role and column not in of_side:
                 self.ask(N_("What is column {name}?"), name=column.called)
@@ -180,7 +181,7 @@ class Interpreter:
                 names = [column.called for column in self.columns if column.role == role]
                 self.ask(N_("Columns {one} and {other} are read as the same quantity."), one=names[0], other=names[1])
 
-    def _ask_side(self) -> list[Column]:
+    def ask_side(self) -> list[Column]:
         """Ask which shaft columns are of that are named after the motor; those about which this is the question.
 
         Values of the motor are never those of the output: the gear's ratio and losses lie between them.

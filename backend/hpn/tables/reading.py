@@ -1,4 +1,4 @@
-"""From a file or a text to a reading, as plain data: the one way in for tables of phases and of axes.
+"""From a file or a text to a reading, as plain data: the one way in for tables of phases, of axes and of motors.
 
 Whatever cells say is looked at here and nowhere else: a service calls this in a process with limited memory and time,
 and shows what comes of it.
@@ -12,6 +12,7 @@ from hpn.tables.axes import read_axes
 from hpn.tables.columns import ANY, NO_CHOICES, Choices
 from hpn.tables.cycles import read_grids
 from hpn.tables.files import TableBounds, contents_of
+from hpn.tables.motors import read_motors
 from hpn.tables.outcomes import with_outcomes
 from hpn.tables.sheets import Grid
 from hpn.tables.table import Table
@@ -63,10 +64,11 @@ def _mark_of(content: bytes | str) -> str:
 
 
 def _table(sheets: Sequence[Grid] | Sentence, wanted: TableBounds, choices: Choices, assumed: Collection[str]) -> Table:
-    """The table of a sheet; of axes the reading that knows most columns, out of those by each separator."""
+    """The table of a sheet; of axes or motors the reading that knows most columns, of those by each separator."""
     if isinstance(sheets, Sentence):
         return Table(problem=sheets)
     if wanted.inputs.has_axes:
-        tables = [read_axes(grid, wanted.inputs, choices, assumed) for grid in sheets]
+        read = read_motors if wanted.inputs.has_motors else read_axes
+        tables = [read(grid, wanted.inputs, choices, assumed) for grid in sheets]
         return max(tables, key=lambda table: sum(bool(column.role) for column in table.columns))
     return with_outcomes(read_grids(sheets, choices, assumed), sheets, choices, assumed)

@@ -65,6 +65,7 @@ class Table:
     no load; `names` are theirs, none where no column is read as that. `stop_Nm` is T_k by rows that are no phases but
     the emergency stop, blank for none. `axes` are rows in list form by the names of `hpn fleet`, where a cell that is
     no number stands as it is written; `origins` are the numbers of the rows that the phases of an axis stand in.
+    `motors` are rows of figures by the names of a motor's fields; their origins are by their designations.
     """
 
     problem: Sentence | None = None
@@ -82,6 +83,7 @@ class Table:
     stop_Nm: str = ""
     axes: tuple[dict[str, Any], ...] = ()
     origins: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    motors: tuple[dict[str, Any], ...] = ()
 
     @property
     def whole(self) -> bool:

@@ -48,6 +48,7 @@ from hpn.web.door.metrics import CountedStore, Metrics
 from hpn.web.door.observation import Observation
 from hpn.web.door.pools import Pools
 from hpn.web.door.readers import Readers
+from hpn.web.motor_lists import MotorList
 from hpn.web.pages import (
     assets,
     compared,
@@ -66,6 +67,8 @@ from hpn.web.pages import (
 from hpn.web.pages import axis as axis_pages
 from hpn.web.pages import calculator as pages
 from hpn.web.pages import catalogue as catalogue_pages
+from hpn.web.pages import motor_lists as motor_list_pages
+from hpn.web.pages import pairs as pair_pages
 from hpn.web.pages import revisions as revision_pages
 from hpn.web.pages import saved as selection_pages
 from hpn.web.settings import Settings
@@ -142,6 +145,8 @@ ROUTERS: tuple[APIRouter, ...] = (
     machine_kinds.router,
     machine_since.router,
     machine_list.router,
+    motor_list_pages.router,
+    pair_pages.router,
     machine.router,
     transfer.router,
     compared.router,
@@ -155,7 +160,7 @@ ROUTERS: tuple[APIRouter, ...] = (
 BODIES = (
     Application,
     Pairing,
-    motor_lists.MotorList,
+    MotorList,
     schemas.Batch,
     archive.SaveRequest,
     archive.Names,

@@ -21,6 +21,9 @@ _SUPERSCRIPT = Pattern(r"\^?\(?-1\)?$", _COMPOSED)
 _SQUARE = Pattern(r"(?:\^|\*\*)\(?2\)?$", _COMPOSED)
 _PER = Pattern(r"\.? */ *", _COMPOSED)
 _BESIDE_POWER = Pattern(rf"[{_SIGNS}^()]", _COMPOSED)
+_OF_TEN = Pattern(r"[x×·]? *10\^?\(?-([0-9])\)?[ x×·*]*kg[ ·]*m2", _COMPOSED)
+"""An inertia as data sheets have it: `10⁻⁴ kg·m²` is kg·cm²."""
+
 _POWER = Pattern(r"(.+?)(?:\^|\*\*)?\(?([23])?\)?", _COMPOSED)
 
 
@@ -83,6 +86,8 @@ def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
     if len(text) > LONGEST:
         return ()
     spelling = _spelling(text)
+    if (factor := _OF_TEN.fullmatch(spelling)) is not None:
+        spelling = {"4": "kg·cm2", "6": "kg·mm2", "7": "g·cm2"}.get(factor[1], spelling)
     codes = SPELLINGS.get(spelling) or _FOLDED.get(spelling.casefold(), ())
     return tuple(code for code in codes if QUANTITY_OF[code] == quantity or not (quantity or code == FREQUENCY))
 

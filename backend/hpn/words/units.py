@@ -45,6 +45,7 @@ SYMBOLS = {
     "rad_per_s": "rad/s",
     "J": "J",
     "kW_per_s": "kW/s",
+    "kW": "kW",
 }
 """Unit suffix of a field name -> the symbol a reader sees."""
 
@@ -168,6 +169,11 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "oz_in2": Unit("oz·in²", "ounce * inch ** 2", "oz·in2"),
         "lb_in_s2": Unit("lb·in·s²", "force_pound * inch * second ** 2", "lb·in·s2 lbf·in·s2 lb·in·sec2 lbf·in·sec2"),
         "oz_in_s2": Unit("oz·in·s²", "force_ounce * inch * second ** 2", "oz·in·s2 ozf·in·s2 oz·in·sec2 ozf·in·sec2"),
+    },
+    "power": {
+        "kW": Unit("kW", "kilowatt", "kW"),
+        "W": Unit("W", "watt", "W Watt"),
+        "hp": Unit("hp", "horsepower", "hp HP"),
     },
     "frequency": {"Hz": Unit("Hz", "hertz", "Hz"), "kHz": Unit("kHz", "kilohertz", "kHz")},
 }

@@ -64,11 +64,11 @@ def sizing_of(reading: MachineReading, catalogue: Catalogue) -> Callable[[], Any
         return partial(drafts_in, reading.rows, reading.faults, {}, catalogue)
     table = reading.reading.table
     assert table is not None
-    _require_whole(table)
+    require_whole(table)
     return partial(drafts_in, table.axes, (), dict(table.origins), catalogue)
 
 
-def _require_whole(table: Table) -> None:
+def require_whole(table: Table) -> None:
     """Raise Problem 422 for a table that can't be read, or leaves questions open, with all of them."""
     if table.problem:
         raise Problem(422, table.problem)

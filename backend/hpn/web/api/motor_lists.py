@@ -1,73 +1,47 @@
 """Lists of motors over REST: keep one under a name, list, read, replace, delete; `server` is motors.csv."""
 
+from collections.abc import Sequence
 from datetime import datetime
+from functools import partial
 from typing import Annotated
 
-import msgspec
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 from msgspec import Raw
-from pydantic import AfterValidator, Field, WrapValidator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, ValidationError
 from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.application import InputError, MotorEntry
-from hpn.application.pairing import Distinct
+from hpn.application.faults import Fault
 from hpn.engine.motors import entries_of
-from hpn.store import (
-    MOST_LISTS,
-    ListsSpentError,
-    MotorListDraft,
-    MotorListLine,
-    NameTakenError,
-    SavedMotorList,
-    Store,
-)
+from hpn.store import MotorListDraft, MotorListLine
+from hpn.tables.reading import Reading
+from hpn.tables.table import Table
+from hpn.web import motor_lists
 from hpn.web.api import schemas
+from hpn.web.api.fleet import MEDIA_TYPES
+from hpn.web.api.machine_tables import ANSWER, WORKBOOK, require_whole
+from hpn.web.api.machines import MOST_ANSWER, MOST_ANSWERS
 from hpn.web.api.replies import JSONBytes, Moment, encode
 from hpn.web.door.access import admit
-from hpn.web.door.bodies import parsed, read_body
-from hpn.web.door.conditions import conditional, etag_of, require_done, require_match
-from hpn.web.door.observation import note
-from hpn.web.door.pools import compute
+from hpn.web.door.bodies import JSON, content_type_of, parsed, read_body
+from hpn.web.door.conditions import conditional
+from hpn.web.door.pools import compute, compute_beside
 from hpn.web.door.problems import Problem
-from hpn.words.fields import at_most, in_parts
+from hpn.web.motor_lists import SERVER, MotorList, draft_of, tag_of
+from hpn.web.motor_tables import motors_in, read_answered
 from hpn.words.reply import Reply
-from hpn.words.titles import Title
 from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/api/v1/motor-lists"
-SERVER = "server"
-"""Id of the list that motors.csv is."""
 
-MOST_LISTED = 5000
-"""Motors of a list, at most."""
+TABLES = (MEDIA_TYPES[".csv"], WORKBOOK)
+NO_TABLE = N_("the content is no table of motors: send CSV or XLSX")
 
 IF_MATCH = {"parameters": [schemas.header("If-Match", "Tag of the state that is to change.")]}
 
 router = APIRouter(prefix=ADDRESS, tags=["Motors"])
 """Its routes are of different groups, which each declares."""
-
-
-def _name(name: str | None) -> str:
-    if not name:
-        raise PydanticCustomError("empty", "must not be empty")
-    return name
-
-
-class MotorList(Distinct):
-    """A list of motors under a name."""
-
-    name: Annotated[Title, AfterValidator(_name)] = Field(
-        description="Name, which its owner gives one list alone.", examples=["Our servo motors"]
-    )
-    motors: Annotated[
-        tuple[MotorEntry, ...],
-        Field(min_length=1, max_length=MOST_LISTED),
-        WrapValidator(in_parts),
-        at_most(MOST_LISTED),
-    ] = Field(description="Its motors, each designation once.")
 
 
 class MotorListSummary(Reply, frozen=True):
@@ -113,24 +87,36 @@ class MotorListReply(Reply, frozen=True):
     operation_id="saveMotorList",
     summary="Keep a list of motors",
     status_code=201,
-    openapi_extra=schemas.request_body(MotorList),
+    openapi_extra=schemas.with_tables(schemas.request_body(MotorList), TABLES, schemas.OF_MOTORS),
     response_model=MotorListSummary,
     responses=schemas.answers(*(400, 408, 409, 413, 415, 422), status=201, headers=schemas.headers("Location", "ETag")),
 )
-async def save_list(request: Request) -> Response:
-    """Keeps up to 5000 motors under a name, which a key or whoever has none gives one list alone; up to 200 lists."""
-    draft = await compute(request, "pages", _draft, await read_body(request))
-    store: Store = request.app.state.store
-    try:
-        id = await store.add_motor_list(draft, request.state.api_key)
-    except NameTakenError:
-        raise _taken(draft.name) from None
-    except ListsSpentError:
-        said = Sentence(N_("there are {most} lists of motors, as many as one may keep"), {"most": str(MOST_LISTS)})
-        raise Problem(409, said) from None
-    note(request, motor_list=id)
-    saved = await _found(request, id)
-    return JSONBytes(encode(_line(saved)), 201, {"Location": f"{ADDRESS}/{id}", "ETag": _tag(saved)})
+async def save_list(
+    request: Request,
+    name: Annotated[str | None, Query(description="Of a table: the name of the list.", max_length=200)] = None,
+    answer: Annotated[
+        list[Annotated[str, Query(max_length=MOST_ANSWER)]],
+        Query(
+            description="Of a table: a column, by heading or number, and what it is: a figure by its name, a unit, or "
+            "skip, such as `M0:stall_torque_Nm`, `3:Nm`, `k_T:skip`; or a question and its answer, such as "
+            "`zeros:unknown`.",
+            max_length=MOST_ANSWERS,
+        ),
+    ] = [],  # noqa: B006
+) -> Response:
+    """Keeps up to 5000 motors under a name, which a key or whoever has none gives one list alone; up to 200 lists.
+
+    A table of motors is read as on the page /motor-lists: what it leaves open is never guessed, but listed as the
+    errors of a 422, to be answered by repeated `answer`.
+    """
+    body = await read_body(request, JSON, *TABLES)
+    if content_type_of(request) == JSON:
+        draft = await compute(request, "pages", _draft, body)
+    else:
+        reading, faults = await compute_beside(request, "files", partial(read_answered, body, answer))
+        draft = await compute(request, "pages", _draft_of_table, reading, faults, name)
+    saved = await motor_lists.kept(request, draft)
+    return JSONBytes(encode(_line(saved)), 201, {"Location": f"{ADDRESS}/{saved.id}", "ETag": tag_of(saved)})
 
 
 @router.get(
@@ -147,7 +133,7 @@ async def list_lists(request: Request) -> Response:
     state: State = request.app.state
     own = state.catalogue.motors
     server = [MotorListSummary(SERVER, SERVER, len(own), None, None)] if own else []
-    lists = [*server, *(_line(line) for line in await state.store.motor_lists())]
+    lists = [*server, *(_line(line) for line in await motor_lists.lines_of(request))]
     return conditional(request, encode(MotorListsReply(lists)))
 
 
@@ -165,8 +151,8 @@ async def read_motor_list(request: Request, id: schemas.ListId) -> Response:
     if id == SERVER:
         motors = entries_of(request.app.state.catalogue.motors)
         return conditional(request, _whole(id, SERVER, [motor.model_dump() for motor in motors]))
-    saved = await _found(request, id)
-    return conditional(request, _whole(id, saved.name, Raw(saved.content)), _tag(saved))
+    saved = await motor_lists.found(request, id)
+    return conditional(request, _whole(id, saved.name, Raw(saved.content)), tag_of(saved))
 
 
 @router.put(
@@ -181,16 +167,10 @@ async def read_motor_list(request: Request, id: schemas.ListId) -> Response:
 async def replace_motor_list(request: Request, id: schemas.ListId) -> Response:
     """Replaces name and motors. What was taken from the list before keeps its figures."""
     body = await read_body(request)
-    version = await _changeable(request, id)
+    version = motor_lists.version_in(request, await motor_lists.changeable(request, id))
     draft = await compute(request, "pages", _draft, body)
-    try:
-        replaced = await request.app.state.store.replace_motor_list(id, draft, version)
-    except NameTakenError:
-        raise _taken(draft.name) from None
-    require_done(replaced, version, _not_found(id))
-    note(request, motor_list=id)
-    saved = await _found(request, id)
-    return JSONBytes(encode(_line(saved)), headers={"ETag": _tag(saved), "Cache-Control": "no-cache"})
+    saved = await motor_lists.replaced(request, id, draft, version)
+    return JSONBytes(encode(_line(saved)), headers={"ETag": tag_of(saved), "Cache-Control": "no-cache"})
 
 
 @router.delete(
@@ -204,62 +184,28 @@ async def replace_motor_list(request: Request, id: schemas.ListId) -> Response:
 )
 async def delete_motor_list(request: Request, id: schemas.ListId) -> Response:
     """Deletes a list permanently. What was taken from it keeps its figures."""
-    version = await _changeable(request, id)
-    require_done(await request.app.state.store.delete_motor_list(id, version), version, _not_found(id))
-    note(request, motor_list=id)
+    version = motor_lists.version_in(request, await motor_lists.changeable(request, id))
+    await motor_lists.removed(request, id, version)
     return Response(status_code=204)
 
 
-async def motors_of(request: Request, id: str) -> list[MotorEntry]:
-    """Motors of a list, `server` included; InputError at `list` where there is none."""
-    state: State = request.app.state
-    if id == SERVER:
-        if not state.catalogue.motors:
-            said = Sentence(N_("there are no motors: list them in motors.csv of a catalogue supplement"))
-            raise InputError((("list",), said))
-        return entries_of(state.catalogue.motors)
-    saved = await state.store.motor_list(id)
-    if saved is None:
-        raise InputError((("list",), Sentence(N_("there is no such list of motors"))))
-    return [MotorEntry.model_construct(**motor) for motor in msgspec.json.decode(saved.content)]
-
-
 def _draft(body: bytes) -> MotorListDraft:
-    sent = parsed(MotorList, body)
-    content = msgspec.json.encode([motor.model_dump() for motor in sent.motors])
-    return MotorListDraft(sent.name, len(sent.motors), content)
+    return draft_of(parsed(MotorList, body))
 
 
-async def _found(request: Request, id: str) -> SavedMotorList:
-    saved: SavedMotorList | None = await request.app.state.store.motor_list(id)
-    if saved is None:
-        raise _not_found(id)
-    return saved
-
-
-async def _changeable(request: Request, id: str) -> int | None:
-    """Version that `If-Match` names, None where it names none; Problem 404, 403 and 412."""
-    if id == SERVER:
-        raise Problem(403, Sentence(N_("the list server is motors.csv of the service, which is read-only")))
-    saved, state = await _found(request, id), request.app.state
-    if state.gate.has_keys:
-        state.gate.require_owner(request, saved.owner or None)
-    if request.headers.get("if-match", "*").strip() == "*":
-        return None
-    require_match(request, _tag(saved))
-    return saved.version
-
-
-def _taken(name: str) -> Problem:
-    return Problem(409, Sentence(N_("there is a list of motors named {name} already"), {"name": repr(name)}))
-
-
-def _not_found(id: str) -> Problem:
-    return Problem(404, f"there is no list of motors {id[:60]!r}; it may have been deleted")
-
-
-def _tag(line: MotorListLine) -> str:
-    return etag_of(f"{line.id} {line.version}".encode())
+def _draft_of_table(reading: Reading, faults: Sequence[Sentence], name: str | None) -> MotorListDraft:
+    """A list out of a table; Problem 422 for answers that are none, open questions, and motors that can't be."""
+    if faults:
+        raise Problem(422, faults, [Fault(ANSWER, fault.text, "answer") for fault in faults])
+    table = reading.table or Table(problem=Sentence(NO_TABLE))
+    require_whole(table)
+    motors, refused = motors_in(table)
+    if refused:
+        raise Problem(422, refused)
+    try:
+        return draft_of(MotorList.model_validate({"name": name, "motors": motors}))
+    except ValidationError as error:
+        raise Problem.of(error) from None
 
 
 def _line(line: MotorListLine) -> MotorListSummary:

@@ -13,12 +13,12 @@ from hpn.catalogue import Catalogue
 from hpn.engine.pairs import Pairs, pairs_of
 from hpn.links.writer import to_link
 from hpn.web.api import schemas
-from hpn.web.api.motor_lists import motors_of
 from hpn.web.api.replies import JSONBytes, encode
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.pools import compute
 from hpn.web.form.linked import LONGEST_LINK
+from hpn.web.motor_lists import motors_of
 
 router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calculator")])
 

@@ -63,13 +63,18 @@ def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
     return {"requestBody": {"required": True, "content": {kind: {"schema": dict(table)} for kind in media_types}}}
 
 
-def with_tables(body: dict[str, Any], media_types: Iterable[str]) -> dict[str, Any]:
-    """The entry of a body that may be a table of axes, too."""
+OF_AXES = (
+    "A row for each axis or phase, with whatever headings; `axes.csv` and `axes.parquet` of a machine are such tables."
+)
+OF_MOTORS = "A row for each motor, with the names and units of its data sheet as headings."
+
+
+def with_tables(body: dict[str, Any], media_types: Iterable[str], said: str = OF_AXES) -> dict[str, Any]:
+    """The entry of a body that may be a table, too: of axes, unless something else is said."""
     table = {
         "type": "string",
         "format": "binary",
-        "description": "A row for each axis or phase, with whatever headings; `axes.csv` and `axes.parquet` of a "
-        "machine are such tables.",
+        "description": said,
     }
     body["requestBody"]["content"] |= {kind: {"schema": dict(table)} for kind in media_types}
     return body

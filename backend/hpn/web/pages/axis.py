@@ -44,9 +44,9 @@ async def show_posted_axis(request: Request) -> Response:
 
 
 async def _shown(request: Request, pairs: Pairs) -> Response:
-    machine, axis = await axis_of(request, request.path_params["id"], _number(request))
+    machine, axis = await axis_of(request, request.path_params["id"], number_of(request))
     require_key_to_edit(request, machine)
-    around = await _neighbours(request, machine, axis)
+    around = await neighbours(request, machine, axis)
     return await compute(request, "pages", _responded, request, machine, axis, around, pairs)
 
 
@@ -55,14 +55,16 @@ def _responded(request: Request, machine: Machine, axis: SavedAxis, neighbours: 
     return calculator.respond(request, form, axis=replace(view, may_change=may_change(request, machine)))
 
 
-def _number(request: Request) -> int:
+def number_of(request: Request) -> int:
+    """Number of the axis in the address; Problem 404 for what can't be one."""
     text = request.path_params["number"]
     if not (text.isascii() and text.isdigit() and len(text) < 11 and 1 <= int(text) <= MOST_NUMBER):
         raise Problem(404, f"there is no axis {text[:20]!r}")
     return int(text)
 
 
-async def _neighbours(request: Request, machine: Machine, axis: SavedAxis) -> Neighbours:
+async def neighbours(request: Request, machine: Machine, axis: SavedAxis) -> Neighbours:
+    """Axes before and after one."""
     order = (None, *machine.order, None)
     at = machine.order.index(axis.number) + 1
     beside = [order[at - 1], order[at + 1]]
@@ -88,8 +90,8 @@ async def save_axis(request: Request) -> Response:
 
 async def _saved(request: Request, pairs: Pairs) -> Response | None:
     """Answer to a form that saves; None where somebody else was faster at that very moment."""
-    machine, axis = await axis_of(request, request.path_params["id"], _number(request))
-    around = await _neighbours(request, machine, axis)
+    machine, axis = await axis_of(request, request.path_params["id"], number_of(request))
+    around = await neighbours(request, machine, axis)
     form, view, own = await compute(request, "pages", _own, request, machine, axis, around, pairs)
     if form.problems:
         return await compute(request, "pages", _responded, request, machine, axis, around, pairs)

@@ -1,0 +1,163 @@
+"""The page of pairs: what it ranks is what `POST /api/v1/pairs` answers, and a pair that is taken judges as it did."""
+
+import re
+from html import unescape
+from urllib.parse import parse_qs, urlencode, urlsplit
+
+import pytest
+from starlette.testclient import TestClient
+
+from hpn.application import Application
+from hpn.links.writer import to_link
+from tests.build import TURNING, Json, cycle, phase
+from tests.web.test_motor_list_pages import hidden, kept, sent
+
+SHEET = """Motor;M_N [Nm];M_max [Nm];n_N [rpm];n_max [rpm];J_m [kg·cm²];m [kg]
+S40-0.6;0.64;1.9;3000;6000;0.17;0.9
+S60-1.3;1.27;3.8;3000;6000;0.41;1.4
+S80-2.4;2.39;7.2;3000;6000;1.14;2.7
+"""
+TYPED: Json = cycle(phase(10, 100, 1), phase(-8, 60, 0.5)) | {"requirements": {"load_inertia_kgm2": 0.05}}
+MOVED: Json = {"duty_cycle": {"motion": TURNING}}
+
+
+@pytest.fixture(scope="module")
+def list_id(keeping: TestClient) -> str:
+    """Id of a list of three motors."""
+    return kept(keeping, "Three", SHEET).rpartition("/")[2]
+
+
+def query(application: Json, **own: str) -> str:
+    """Address of the pairs of an application."""
+    link = to_link(Application.model_validate(application)).removeprefix("/?")
+    return f"/pairs?{link}&{urlencode(own)}"
+
+
+def ranked(page: str) -> list[tuple[str, str]]:
+    """Gears and motors of the ranked table of a page."""
+    rows = re.findall(r"<tr[^>]*>(.*?)</tr>", page[page.index("pairs-table") : page.index("</table>")], re.S)[1:]
+    plain = [re.sub(r"<[^>]+>", "|", row) for row in rows]
+    cells = [[cell.strip() for cell in row.split("|") if cell.strip()] for row in plain]
+    return [(row[1], row[2]) for row in cells]
+
+
+def taken(page: str) -> str:
+    """Address of the pair that is looked at, in the application."""
+    found = re.search(r'class="primary button" href="([^"]*)"', page)
+    assert found
+    return unescape(found[1])
+
+
+@pytest.mark.parametrize("application", [TYPED, MOVED])
+@pytest.mark.parametrize("by", ["weight", "utilisation", "inertia_ratio", "resonance"])
+def test_the_page_ranks_as_the_api_does(keeping: TestClient, list_id: str, application: Json, by: str) -> None:
+    body = {"application": application, "list": list_id, "rank_by": by, "best_of": "motor"}
+    answer = keeping.post("/api/v1/pairs", json=body).json()
+
+    page = keeping.get(query(application, list=list_id, by=by))
+
+    assert page.status_code == 200
+    assert ranked(page.text) == [(pair["designation"], pair["motor"]) for pair in answer["pairs"]]
+    every = keeping.get(query(application, list=list_id, by=by, all="1", more="1")).text
+    answer = keeping.post("/api/v1/pairs", json=body | {"best_of": None}).json()
+    assert ranked(every) == [(pair["designation"], pair["motor"]) for pair in answer["pairs"]]
+
+
+def test_a_pair_that_is_taken_judges_as_the_pair_did(keeping: TestClient, list_id: str) -> None:
+    page = keeping.get(query(MOVED, list=list_id)).text
+    (pair, *_) = keeping.post("/api/v1/pairs", json={"application": MOVED, "list": list_id}).json()["pairs"]
+
+    address = taken(page)
+
+    given = parse_qs(urlsplit(address).query)
+    assert given["gear"] == [pair["designation"]]
+    motor = {"maximum_speed_rpm": "nm", "peak_torque_Nm": "Tm", "rated_torque_Nm": "Tmn", "inertia_kgm2": "Jm"}
+    figures = {name: float(given[symbol][0]) for name, symbol in motor.items()}
+    figures["rated_speed_rpm"] = float(given["nmr"][0])
+    answer = keeping.post("/api/v1/select", json=MOVED | {"requirements": {"motor": figures}}).json()
+    judged = next(one for one in answer["candidates"] if one["designation"] == pair["designation"])
+    assert judged["status"] == pair["status"] == "suitable"
+    assert judged["utilisation"] == pytest.approx(pair["utilisation"], rel=1e-12)  # one engine, in another order
+    assert keeping.get(address).status_code == 200
+
+
+def test_a_pair_has_its_pdf(keeping: TestClient, list_id: str) -> None:
+    page = keeping.get(query(MOVED, list=list_id)).text
+    address = re.search(r'href="(/report\.pdf[^"]*)"', page)
+
+    assert address and keeping.get(unescape(address[1])).content.startswith(b"%PDF")
+
+
+def test_rejected_pairs_are_folded_by_the_check_that_fails(keeping: TestClient, list_id: str) -> None:
+    answer = keeping.post("/api/v1/pairs", json={"application": TYPED, "list": list_id}).json()
+
+    page = keeping.get(query(TYPED, list=list_id)).text
+
+    folded = page[page.index("pairs-rejected") :]
+    counts = [int(text) for text in re.findall(r"<strong>(\d+)</strong>", folded)]
+    assert sorted(counts) == sorted(answer["failing"].values())
+    assert counts == sorted(counts, reverse=True)
+
+
+def test_a_marked_pair_is_looked_at_suitable_or_not(keeping: TestClient, list_id: str) -> None:
+    page = keeping.get(query(TYPED, list=list_id, at="HPN-11A-50 S80-2.4")).text
+
+    heading = re.search(r'id="pair-heading">(.*?)</h2>', page, re.S)
+    assert heading and "HPN-11A-50" in heading[1] and "S80-2.4" in heading[1]
+
+
+def test_the_limit_of_the_drive_is_said_with_what_the_motor_would_do(keeping: TestClient, list_id: str) -> None:
+    page = keeping.get(query(TYPED, list=list_id, at="HPN-11A-50 S80-2.4")).text
+
+    assert "Set the drive’s torque limit to" in page
+    assert "would put" in page
+
+
+def test_bounds_of_pairs_are_read_from_the_form(keeping: TestClient, list_id: str) -> None:
+    wide, narrow = (
+        keeping.get(query(TYPED, list=list_id, all="1", more="1") + f"&Jr={Jr}").text for Jr in ("1e6", "0,5")
+    )
+
+    assert len(ranked(wide)) > (len(ranked(narrow)) if "pairs-table" in narrow else 0)
+    assert "must be a number above 0" in keeping.get(query(TYPED, list=list_id) + "&Jr=x").text
+    assert "must be a number above 0" in keeping.get(query(TYPED, list=list_id, fd="-1")).text
+
+
+def test_a_list_that_is_pasted_on_the_page_leads_to_its_pairs(keeping: TestClient) -> None:
+    link = query(TYPED).partition("?")[2].rstrip("&")
+    shown = sent(keeping, {"text": SHEET, "link": link})
+
+    answer = sent(keeping, {**hidden(shown.text), "name": "Pasted", "keep": "1"})
+
+    assert answer.headers["location"].startswith(f"/pairs?{link}&list=")
+    assert ranked(keeping.get(answer.headers["location"]).text)
+
+
+def test_an_axis_of_a_machine_has_pairs_and_takes_one(keeping: TestClient, list_id: str) -> None:
+    axes = [{"name": "Arm", "application": TYPED}]
+    machine = {"title": "Line", "common": {"requirements": {"life_h": 5000}}, "axes": axes}
+    id = keeping.post("/api/v1/machines", json=machine).json()["id"]
+
+    page = keeping.get(f"/machines/{id}/axes/1/pairs?list={list_id}").text
+    address = taken(page)
+
+    assert address.startswith(f"/machines/{id}/axes/1?")
+    given = parse_qs(urlsplit(address).query)
+    assert "Tmn" in given and "Lh" not in given  # what the machine has in common stays the machine's
+    assert keeping.get(address).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "tail",
+    [
+        "",
+        "?list=x",
+        "?T=x",
+        "?T=1&n=1&t=1&at=%00",
+        "?T=1&n=1&t=1&fd=1e999",
+        "?T=1&n=1&t=1&Jr=nan",
+        "?all=" + "9" * 5000,
+    ],
+)
+def test_no_address_breaks_the_page(keeping: TestClient, list_id: str, tail: str) -> None:
+    assert keeping.get(f"/pairs{tail}").status_code in (200, 422)
