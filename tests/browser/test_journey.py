@@ -74,6 +74,7 @@ def revision(page: Page, label: str, note: str) -> None:
     page.get_by_text(f"Revision {label} speichern").click()
     form = page.get_by_role("form", name="Revision speichern")
     expect(form.get_by_label("Kennung")).to_have_value(label)
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     form.get_by_label("Bemerkung").fill(note)
     form.get_by_role("button", name="Speichern").click()
     expect(page.get_by_role("heading", name=re.compile("→"))).to_be_visible()

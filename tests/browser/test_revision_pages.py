@@ -113,3 +113,16 @@ def test_the_next_revision_begins_with_the_latest_and_is_saved_from_the_head(vis
     expect(page.get_by_role("heading", name="B → C")).to_be_visible()
     page.get_by_role("link", name="Open revision C").click()
     expect(page.get_by_text("C of 3")).to_be_visible()
+
+
+@pytest.mark.parametrize("width", [1440, 390])
+@pytest.mark.parametrize("place", ["/machines", "/selections", "/selections/revisions"])
+def test_lists_and_revisions_of_a_selection_fit_in_german(
+    visitor: Visitor, machine: str, selection: str, place: str, width: int
+) -> None:
+    address = f"{selection}/revisions" if place == "/selections/revisions" else place
+    page = visitor.open(address, width, touch=width < 600)
+    in_german(page)
+
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    assert violations(page) == []

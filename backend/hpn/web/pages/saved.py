@@ -76,12 +76,11 @@ class WorkingCopy(NamedTuple):
 
 def _shown(request: Request, machine: Machine | None, reopened: Reopened) -> Response:
     values = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
-    if machine is not None:
-        values |= {
-            "working": WorkingCopy.of(machine, reopened.saved),
-            "may_change": may_change(request, machine),
-            "next": next_label(reopened.saved.revisions),
-        }
+    values |= {
+        "working": WorkingCopy.of(machine, reopened.saved) if machine else None,
+        "may_change": machine is not None and may_change(request, machine),
+        "next": next_label(reopened.saved.revisions),
+    }
     address = absolute(request, url_of(reopened.saved.id))
     return page(request, "selection.html", address=address, qr_code=qr_code(address), **values)
 
