@@ -35,6 +35,10 @@ PAGES = (
     "/checks/average_torque",
     "/machines",
     "/machines?show=todo",
+    "/motor-lists",
+    "/motor-lists/nothing",
+    "/pairs",
+    "/pairs?T=40&n=250&t=0.3",
 )
 SHORT = (FULL, "/paste", "/catalogue?size=20A", "/catalogue/HPN-20A-5", "/selections", "/nowhere")
 
