@@ -19,6 +19,7 @@ import pytest
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.cli import main
+from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, worked_example
 
 Output = pytest.CaptureFixture[str]
@@ -363,7 +364,7 @@ def test_help_names_every_command(capsys: Output) -> None:
 
     assert exit_.value.code == 0
     out = capsys.readouterr().out
-    assert re.findall(r"^ {4}(\w+)", out, re.M) == [
+    assert re.findall(r"^ {4}(\w+)", out.partition("exit codes")[0], re.M) == [
         "select",
         "fleet",
         "machine",
@@ -373,3 +374,20 @@ def test_help_names_every_command(capsys: Output) -> None:
         "database",
         "key",
     ]
+
+
+def test_help_has_every_setting_with_its_default_and_every_exit_code(capsys: Output) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+
+    out = capsys.readouterr().out
+    shown = dict(re.findall(r"^  (HPN_[A-Z_]+)(?: \((.*)\))?$", out, re.M))
+    assert set(shown) == {f"HPN_{name.upper()}" for name in Settings.model_fields}
+    assert (shown["HPN_PORT"], shown["HPN_API_KEYS"]) == ("8000", "")
+    assert shown["HPN_GUARDED"] == "batch,deleting,listing,writing"
+    assert shown["HPN_DATABASE_URL"] == "sqlite:///hpn.sqlite3"
+    words = " ".join(out.split())
+    assert all((field.description or "?") in words for field in Settings.model_fields.values())
+    table = (Path(__file__).parents[2] / "docs/command-line.md").read_text()
+    codes = re.findall(r"^\| (\d) \|", table, re.M)
+    assert re.findall(r"^  (\d) ", out, re.M) == codes == ["0", "1", "2", "3"]

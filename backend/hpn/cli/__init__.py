@@ -18,6 +18,12 @@ from hpn.installed import require
 
 EXTRAS = {"serve": "serve", "database": "serve", "machine": "serve", "fleet": "fleet"}
 """Extras of commands that need one."""
+EXIT_CODES = """exit codes:
+  0    success: a gear is suitable, all rows are answered, nothing differs
+  1    hpn select: no gear is suitable; other commands: stopped, or could not continue
+  2    what the caller gave can't be used: the text says why
+  3    hpn select: could not continue; hpn verify: a shown figure differs
+  128+ ended by a signal"""
 COMMANDS = "select, fleet, machine, verify, catalogue, serve, database or key"
 
 
@@ -77,8 +83,16 @@ def _discard_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+class _Parser(argparse.ArgumentParser):
+    """Parser of `hpn`, whose help ends with exit codes and settings; those are loaded when they are asked for."""
+
+    def format_help(self) -> str:
+        """The help, for the terminal's width."""
+        return f"{super().format_help()}\n{EXIT_CODES}\n\n{import_module('hpn.cli.settings').text()}"
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("hpn", description="Select a Harmonic Drive HPN planetary gear.")
+    parser = _Parser("hpn", description="Select a Harmonic Drive HPN planetary gear.")
     parser.add_argument(
         "--version",
         action="store_const",
@@ -86,7 +100,7 @@ def _parser() -> argparse.ArgumentParser:
         dest="command",
         help="print versions of engine and catalogue",
     )
-    commands = parser.add_subparsers(metavar="command", dest="command")
+    commands = parser.add_subparsers(metavar="command", dest="command", parser_class=argparse.ArgumentParser)
     one = commands.add_parser("select", help="select a gear for an application file (JSON; - for standard input)")
     one.add_argument("file")
     form = one.add_mutually_exclusive_group()
