@@ -239,6 +239,8 @@ certificates:
 NAME ?= $(filter %.dump,$(MAKECMDGOALS))
 BACKUP := docker compose run --rm backup
 restore:
+	@docker compose version >/dev/null 2>&1 \
+	    || { echo "docker compose is not here: docs/kubernetes.md says what takes its place" >&2; exit 1; }
 	@[ -n "$(NAME)" ] || { echo "which backup? make restore NAME=… with one of these:" >&2; $(BACKUP) ls >&2; exit 2; }
 	@running=$$(docker compose ps --quiet web) || exit 1; [ -z "$$running" ] \
 	    || { echo "the service runs, and would go on saving what a restore loses: docker compose stop web" >&2; exit 1; }

@@ -54,10 +54,10 @@ class Proxy:
 
 
 @contextmanager
-def proxied(service: int, balancers: str = "", names: str = f"{HOST},127.0.0.1") -> Iterator[Proxy]:
+def proxied(service: int, balancers: str = "", names: str = f"{HOST},127.0.0.1", readers: str = "") -> Iterator[Proxy]:
     """Run the proxy before a service's port, behind load balancers at these addresses, until the block ends.
 
-    It answers for these names.
+    It answers for these names, and for these readers of metrics.
     """
     with tempfile.TemporaryDirectory(prefix="hpn-nginx-") as name, held_port() as http, held_port() as https:
         folder = Path(name)
@@ -72,6 +72,7 @@ def proxied(service: int, balancers: str = "", names: str = f"{HOST},127.0.0.1")
             "PROXY_RESOLVER": "127.0.0.1",  # asks nobody: the service's address is no name
             "PROXY_NAMES": names,
             "PROXY_BALANCERS": balancers,
+            "PROXY_READERS": readers,
         }
         command = [word.replace("$$", "$") for word in SERVICE["command"]]
         with (folder / "log").open("ab") as log:  # its two logs would write over each other

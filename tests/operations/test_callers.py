@@ -97,7 +97,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 @pytest.fixture(scope="module")
 def proxy(service: Service) -> Iterator[Proxy]:
     """nginx before it, which believes one balancer."""
-    with proxied(service.port, balancers="127.0.0.9") as running:
+    with proxied(service.port, balancers="127.0.0.9", readers="127.0.0.0/8") as running:
         yield running
 
 

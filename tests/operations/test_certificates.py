@@ -50,6 +50,7 @@ def started(folder: Path) -> "subprocess.CompletedProcess[str]":
         "PROXY_RESOLVER": "127.0.0.1",
         "PROXY_NAMES": "localhost",
         "PROXY_BALANCERS": "",
+        "PROXY_READERS": "",
     }
     command = [word.replace("$$", "$").replace("exec nginx", "exec nginx -t") for word in SERVICE["command"]]
     with tempfile.TemporaryDirectory(prefix="hpn-nginx-") as work:

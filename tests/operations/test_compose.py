@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
+from hpn import ENGINE_VERSION
 from hpn.web.settings import Settings
 
 ROOT = Path(__file__).parents[2]
@@ -63,6 +64,32 @@ def test_the_proxy_is_told_all_that_its_configuration_asks_for() -> None:
 
     assert asked <= set(proxy["environment"]) | set_by_the_command
     assert proxy["environment"]["PROXY_NAMES"] == "${HPN_ALLOWED_HOSTS:?set it in .env}"
+
+
+def test_metrics_are_for_those_who_are_named_and_nobody_is() -> None:
+    assert SERVICES["proxy"]["environment"]["PROXY_READERS"] == "${METRICS_FROM:-}"
+
+
+def test_the_manifests_for_a_cluster_are_those_of_the_image() -> None:
+    """No cluster is at hand: they are read, and their settings, ports, users and script are those that there are."""
+    text = (ROOT / "docs/kubernetes.md").read_text(encoding="utf-8").partition("```yaml\n")[2].partition("```")[0]
+    parts = {part["kind"]: part for part in YAML(typ="safe").load_all(text)}
+    assert list(parts) == ["Secret", "Deployment", "Service", "Ingress", "CronJob"]
+
+    pod = parts["Deployment"]["spec"]["template"]["spec"]
+    (web,) = pod["containers"]
+    names = {entry["name"] for entry in web["env"]} | {name.upper() for name in parts["Secret"]["stringData"]}
+    assert names <= {f"HPN_{name.upper()}" for name in Settings.model_fields}
+    assert f"{pod['securityContext']['runAsUser']}:{pod['securityContext']['runAsGroup']}" == SERVICES["web"]["user"]
+    assert {mount["name"] for mount in web["volumeMounts"]} == {volume["name"] for volume in pod["volumes"]}
+    assert web["image"].endswith(f":{ENGINE_VERSION}")
+    ports = {port["targetPort"] for port in parts["Service"]["spec"]["ports"]}
+    assert ports == {port["containerPort"] for port in web["ports"]} == {int(environment("HPN_PORT"))}
+    (backup,) = parts["CronJob"]["spec"]["jobTemplate"]["spec"]["template"]["spec"]["containers"]
+    assert SERVICES["backups"]["image"].startswith(f"{backup['image']}@")
+    assert f"\n{backup['command'][-1]}() {{\n" in (ROOT / "backend/backup.sh").read_text()
+    given = {name for name in SERVICES["backups"]["environment"] if name != "BACKUP_HOURS"}
+    assert {entry["name"] for entry in backup["env"]} == given
 
 
 def test_the_service_waits_for_a_healthy_database_and_has_time_to_end() -> None:

@@ -293,6 +293,21 @@ def test_behind_a_load_balancer_callers_are_who_it_says_and_nobody_else_is_belie
     assert service.event(request_id="by-stranger")["client"] == "127.0.0.3"
 
 
+def test_metrics_are_nowhere_but_for_the_addresses_that_are_named(service: Service, client: httpx.Client) -> None:
+    closed = client.get("/metrics")
+
+    assert (closed.status_code, closed.headers["Content-Type"]) == (404, "application/problem+json")
+    assert closed.json()["type"] == "/problems/not-found"
+    assert client.get("/metrics", headers={"X-Forwarded-For": "127.0.0.3"}).status_code == 404
+    with proxied(service.port, readers="127.0.0.3, 10.0.0.0/8", balancers="127.0.0.9") as proxy:
+        asked = asked_for("/metrics")
+        assert status_from(proxy, "127.0.0.3", asked) == 200
+        assert status_from(proxy, "127.0.0.2", asked) == 404
+        behind = b"GET /metrics HTTP/1.1\r\nHost: localhost\r\nX-Forwarded-For: %s\r\n\r\n"
+        assert status_from(proxy, "127.0.0.9", behind % b"10.1.2.3") == 200
+        assert status_from(proxy, "127.0.0.9", behind % b"192.0.2.7") == 404
+
+
 def test_no_line_of_the_log_holds_what_was_asked(client: httpx.Client, proxy: Proxy) -> None:
     client.get("/", params={"T": "987654"})
 

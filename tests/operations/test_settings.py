@@ -14,7 +14,10 @@ from hpn.web.settings import Settings
 from tests.reliability.faults import as_user
 
 ROOT = Path(__file__).parents[2]
-OF_COMPOSE_ALONE = {"POSTGRES_PASSWORD", "PUBLISH", "PUBLISH_HTTP", "LOAD_BALANCERS", "SPOOL_SIZE", "WEB_MEMORY"}
+OF_COMPOSE_ALONE = {
+    *("POSTGRES_PASSWORD", "PUBLISH", "PUBLISH_HTTP", "LOAD_BALANCERS", "SPOOL_SIZE", "WEB_MEMORY"),
+    *("METRICS_FROM", "BACKUP_HOURS", "BACKUP_KEEP"),
+}
 NAMES = {f"HPN_{name.upper()}" for name in Settings.model_fields}
 
 
