@@ -141,6 +141,15 @@ def by_typescript_generator(document: Path, folder: Path) -> list[object]:
     return _compiled(folder, "openapi_generator")
 
 
+def by_hey_api(document: Path, folder: Path) -> list[object]:
+    """Command for the journey with @hey-api/openapi-ts; Node resolves modules by their whole names."""
+    output = {"path": str(folder / "hpn_client"), "module": {"extension": ".js"}}
+    config = f"export default {json.dumps({'input': str(document), 'output': output})};"
+    (folder / "openapi-ts.config.mjs").write_text(config)
+    run(NODE, MODULES / "@hey-api/openapi-ts/bin/run.js", folder=folder)
+    return _compiled(folder, "hey_api")
+
+
 def by_typescript_types(document: Path, folder: Path) -> list[object]:
     """Command for the journey with openapi-typescript; what has a default may be left out of a request."""
     options = ("--default-non-nullable", "false", "--output", folder / "schema.d.ts")
@@ -182,7 +191,7 @@ def figures(service: Service) -> list[float]:
 
 Generate = Callable[[Path, Path], list[Any]]
 LONG: tuple[Generate, ...] = (
-    *(by_python_generator, by_typescript_generator, by_typescript_types),
+    *(by_python_generator, by_hey_api, by_typescript_generator, by_typescript_types),
     *(by_java_generator, by_kotlin_generator),
 )
 
@@ -200,3 +209,10 @@ def test_a_generated_client_selects_saves_lists_renames_reads_and_deletes(
     lost = LOST.get(generate.__name__, set())
     wanted = {name: value for name, value in EXPECTED.items() if name not in lost}
     assert json.loads(found) == {**wanted, "figures": figures(service)}
+
+
+def test_the_documents_name_the_overrides_that_the_python_client_is_made_with() -> None:
+    text = (ROOT / "docs/rest.md").read_text(encoding="utf-8").partition("content_type_overrides:\n")[2]
+    named = dict(line.strip().split(": ") for line in text.partition("```")[0].splitlines())
+
+    assert named == PYTHON_CLIENT["content_type_overrides"]

@@ -76,6 +76,11 @@ def test_the_example_for_curl(example: Example, tmp_path: Path) -> None:
     assert json.loads((tmp_path / "differing.json").read_text())["machines"] == []
     results = [json.loads(line) for line in (tmp_path / "results.ndjson").read_text().splitlines()]
     assert [(line["reference"], line["status"]) for line in results] == [("axis-1", "ok"), ("axis-2", "ok")]
+    verdict = (tmp_path / "verdict.json").read_bytes()
+    best = json.loads((tmp_path / "best.json").read_text())
+    assert len(verdict) < 300
+    assert best["candidates"][0]["designation"] == best["selected"] == json.loads(verdict)["selected"]
+    assert len(best["candidates"]) == 3
     answers = (tmp_path / "answers.csv").read_text().splitlines()
     assert [line.split(",")[:2] for line in answers[1:]] == [["1", '"HPN-20A-4"'], ["2", '"HPN-11A-4"']]
 
