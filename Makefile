@@ -187,7 +187,7 @@ COMPILE := pip compile --quiet --universal --python-version 3.11 --generate-hash
 	--no-emit-index-url --no-emit-find-links $(UPGRADE)
 
 # Extras that a service is installed with.
-SERVED := serve report aas fleet postgres
+SERVED := serve report aas mcp fleet postgres
 
 # Texts of code and templates into the catalogues of translations; prints what is left to translate.
 messages: $(ENVIRONMENT)

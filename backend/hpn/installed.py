@@ -28,6 +28,7 @@ EXTRAS = {
     ),
     "report": ("pypdf", "segno", "typst"),
     "aas": ("basyx", "pyecma376_2"),
+    "mcp": ("anyio", "mcp", "mcp_types"),
     "fleet": ("pyarrow", "tqdm"),
     "cluster": ("dask", "distributed"),
     "postgres": ("psycopg",),

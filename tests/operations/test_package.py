@@ -18,7 +18,7 @@ from tests.operations.installed import ROOT, Installed, brings, build, copy_of_c
 from tests.operations.service import Service, serving
 
 PHASES = "axis,torque_Nm,speed_rpm,duration_s\na,40,250,1\na,0,0,4\n"
-SERVED = ("serve", "report", "aas", "fleet", "postgres")
+SERVED = ("serve", "report", "aas", "mcp", "fleet", "postgres")
 
 
 def missing(extra: str, wheel: Path) -> str:
@@ -154,6 +154,7 @@ def test_wrong_input_is_told_without_any_extra(bare: Installed) -> None:
     [
         (["serve"], "serve"),
         (["database"], "serve"),
+        (["mcp"], "mcp"),
         (["fleet", "axes.csv", "answers.csv"], "fleet"),
         (["fleet", "axes.csv", "answers.csv", "--report", "report.html"], "fleet"),
     ],
@@ -199,13 +200,13 @@ def test_the_page_has_its_styles_and_a_selection_is_saved_and_printed(service: S
 
 @pytest.mark.parametrize(
     ("path", "extra"),
-    [("report.pdf", "report"), ("submodel.aasx", "aas"), ("machines", "fleet")],
+    [("report.pdf", "report"), ("submodel.aasx", "aas"), ("machines", "fleet"), ("mcp", "mcp")],
 )
 def test_a_route_without_its_extra_names_it(lean_service: Service, path: str, extra: str) -> None:
     files = {"file": ("axes.csv", PHASES, "text/csv")}
     answer = (
-        lean_service.client.post("/machines", files=files)
-        if path == "machines"
+        lean_service.client.post(f"/{path}", files=files)
+        if path in ("machines", "mcp")
         else lean_service.client.get(f"/{path}?T=40&n=250&t=1&tp=1")
     )
 

@@ -23,6 +23,11 @@ HELD_S, BESIDE_OTHERS_S = 0.05, 0.25
 JSON = {"Content-Type": "application/json"}
 FORM = {"Content-Type": "application/x-www-form-urlencoded"}
 LINES = {"Content-Type": "application/x-ndjson"}
+SPOKEN = JSON | {"Accept": "application/json, text/event-stream"}
+SELECTING = (
+    b'{"jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": {"name": "select", "arguments": {"application": '
+)
+"""Beginning of a message that calls a tool."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
         yield Hostile("GET", f"/{name}?{few_phases}")
         yield Hostile("POST", f"/{name}", urlencode({"link": f"/?{few_phases}"}).encode(), FORM)
     for body in few:
+        yield Hostile("POST", "/mcp", SELECTING + body + b"}}}", SPOKEN)
         yield Hostile("POST", "/api/v1/select/batch", b'{"applications": [' + body + b"]}", JSON)
         yield Hostile("POST", "/api/v1/select/batch", body + b"\n" + body, LINES)
         yield Hostile("POST", "/api/v1/selections", b'{"application": ' + body + b"}", JSON)
@@ -93,7 +99,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield Hostile("GET", "/selections?reference=" + "a" * 60_000)
     yield Hostile("GET", "/api/v1/selections?" + "&".join(f"k{k}=1" for k in range(8000)))
     yield Hostile("GET", "/api/v1/bearing-envelopes/20A?" + "&".join(f"k{k}=1" for k in range(8000)))
-    for path in ("/", "/catalogue", "/catalogue/HPN-20A-5", f"/catalogue?{LINK}", "/robots.txt"):
+    for path in ("/", "/catalogue", "/catalogue/HPN-20A-5", f"/catalogue?{LINK}", "/robots.txt", "/llms.txt"):
         yield Hostile("GET", path, b"", COOKIE)
     for path in (
         "/openapi.json",

@@ -88,7 +88,7 @@ with TestClient(served_app()) as client:
     for address in ("/", "/?T=40&n=250&t=1", "/catalogue", "/selections", "/api/v1/catalogue"):
         assert client.get(address).status_code == 200, address
     assert client.get("/report.xlsx?T=40&n=250&t=1").content.startswith(b"PK")
-print(*sys.modules.keys() & {"typst", "basyx", "xlsxwriter", "pint", "pyarrow", "openpyxl"})
+print(*sys.modules.keys() & {"typst", "basyx", "xlsxwriter", "pint", "pyarrow", "openpyxl", "mcp"})
 """
 
 

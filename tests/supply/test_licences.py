@@ -19,6 +19,7 @@ PERMISSIVE = {
     "CC0-1.0",
     "ISC",
     "MIT",
+    "MIT-0",
     "MIT-CMU",
     "OFL-1.1",
     "PSF-2.0",

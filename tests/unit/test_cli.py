@@ -371,6 +371,7 @@ def test_help_names_every_command(capsys: Output) -> None:
         "verify",
         "catalogue",
         "serve",
+        "mcp",
         "database",
         "key",
     ]

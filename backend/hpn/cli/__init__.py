@@ -1,5 +1,5 @@
 """Command line: `hpn select application.json`, `hpn fleet axes.parquet answers.parquet`, `hpn verify report.pdf`,
-`hpn catalogue`, `hpn serve`, `hpn machine export ID FILE`, `hpn database`, `hpn key NAME`, `hpn --version`.
+`hpn catalogue`, `hpn serve`, `hpn machine export ID FILE`, `hpn mcp`, `hpn database`, `hpn key NAME`, `hpn --version`.
 
 Each command is a module of this package, which is imported when the command runs: none waits for what others need.
 """
@@ -16,7 +16,7 @@ from types import ModuleType
 
 from hpn.installed import require
 
-EXTRAS = {"serve": "serve", "database": "serve", "machine": "serve", "fleet": "fleet"}
+EXTRAS = {"serve": "serve", "database": "serve", "machine": "serve", "fleet": "fleet", "mcp": "mcp"}
 """Extras of commands that need one."""
 EXIT_CODES = """exit codes:
   0    success: a gear is suitable, all rows are answered, nothing differs
@@ -24,7 +24,7 @@ EXIT_CODES = """exit codes:
   2    what the caller gave can't be used: the text says why
   3    hpn select: could not continue; hpn verify: a shown figure differs
   128+ ended by a signal"""
-COMMANDS = "select, fleet, machine, verify, catalogue, serve, database or key"
+COMMANDS = "select, fleet, machine, verify, catalogue, serve, mcp, database or key"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -115,6 +115,8 @@ def _parser() -> argparse.ArgumentParser:
     serve.add_argument("--host", help="address to listen on, instead of HPN_HOST")
     serve.add_argument("--port", type=_number, help="port to listen on, instead of HPN_PORT")
     serve.add_argument("--workers", type=_number, help="number of processes, instead of HPN_WORKERS")
+    agents = commands.add_parser("mcp", help="answer agents over standard input and output")
+    agents.add_argument("--service", metavar="URL", help="address of the service that its links lead to")
     commands.add_parser("database", help="update the database, and check that saving works")
     key = commands.add_parser("key", help="make an API key")
     key.add_argument("name", help="owner of the key, as in the logs")

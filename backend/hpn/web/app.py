@@ -18,6 +18,7 @@ from hpn.documents.revision import RevisionBlock
 from hpn.store import Store, StoreUnavailableError
 from hpn.web import archive, fleets, spool, todays
 from hpn.web.api import (
+    agents,
     axes,
     batch,
     catalogue,
@@ -123,6 +124,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     motors.router,
     pairs.router,
     motor_lists.router,
+    agents.router,
     selections.router,
     selection_revisions.router,
     machines.router,

@@ -34,8 +34,8 @@ MAXIMUM_QUERY_BYTES = 60_000
 SAVED: frozenset[RouteGroup] = frozenset({"reading", "listing", "writing", "deleting"})
 """Groups whose answers tell of saved selections."""
 
-API = "/api/"
-"""Where the paths of REST begin."""
+API = ("/api/", "/mcp")
+"""Where the paths that programs ask for begin."""
 
 ADMIN = "admin"
 """Name of the key that renames and deletes what any key, or none, has saved."""

@@ -94,3 +94,12 @@ def require_same_origin(request: Request) -> None:
         same = origin is None or origin.partition("://")[2] == request.headers.get("host")
     if not same:
         raise Problem(403, N_("this form was sent by a page of another site"))
+
+
+def require_known_origin(request: Request) -> None:
+    """Raise Problem 403 for a request that a page of another site makes, unless the settings permit its origin."""
+    origin = request.headers.get("origin")
+    if origin is None or origin in request.app.state.settings.cors_origins:
+        return
+    if origin.partition("://")[2] != request.headers.get("host"):
+        raise Problem(403, "this request was made by a page of another site; HPN_CORS_ORIGINS names those that may")

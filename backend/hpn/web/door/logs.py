@@ -15,6 +15,8 @@ from structlog.typing import EventDict, FilteringBoundLogger
 LEVELS = {"debug": logging.DEBUG, "info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
 QUIET = ("alembic", "aiosqlite", "sqlalchemy", "psycopg")
 """Libraries that log statements with their parameters, or more than anybody reads."""
+MUTE = ("mcp",)
+"""Libraries whose lines repeat what a request asked; what goes wrong in them is raised, and logged by the service."""
 REQUEST_ID = re.compile("[A-Za-z0-9._-]{1,64}")
 
 REQUEST: ContextVar[str | None] = ContextVar("request", default=None)
@@ -74,6 +76,8 @@ def configure(level: str) -> None:
     root.setLevel(LEVELS[level])
     for name in QUIET:
         logging.getLogger(name).setLevel(logging.WARNING)
+    for name in MUTE:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
 def _json(logger: Any, method: str, event: EventDict) -> bytes:
