@@ -88,7 +88,17 @@ def test_a_digit_altered_in_a_package_is_named_with_its_path(catalogue: Catalogu
 
     made = package(typed_export_of(CASES["example"], catalogue))
     found = verify(rezipped(made, alter), catalogue).differs
-    assert [one.place for one in found] == ["TechnicalData/TechnicalProperties/repeated_peak_torque_Nm"]
+    section = "TechnicalData/TechnicalPropertyAreas/TorqueAtTheOutput"
+    assert [one.place for one in found] == [f"{section}/repeated_peak_torque_Nm"]
+
+
+def test_a_digit_altered_in_the_course_of_a_motion_is_named_with_its_row(catalogue: Catalogue) -> None:
+    def alter(name: str, part: bytes) -> bytes:
+        return part.replace(b"0.3,", b"0.4,", 1) if name == "aasx/motion_1.csv" else part
+
+    made = package(typed_export_of(CASES["example"], catalogue))
+    found = verify(rezipped(made, alter), catalogue).differs
+    assert [one.place for one in found] == ["motion_1.csv/row 3"]
 
 
 def test_an_altered_answer_inside_a_file_is_named_though_the_lines_agree_with_it(catalogue: Catalogue) -> None:

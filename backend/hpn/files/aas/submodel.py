@@ -1,16 +1,13 @@
-"""The Asset Administration Shell: technical data of the selected gear, and the selection with every check.
+"""The Asset Administration Shell of a selection: one package with technical data, sizing and every check.
 
-`TechnicalData` follows IDTA 02003-1-2 (Generic Frame for Technical Data for Industrial Equipment in Manufacturing, 1.2)
-with its semantic ids. Article number and order code are the designation: the handbook prints no article number, and a
-full order code names output version and motor adapter too; their descriptions say so. An unsaved selection has no date,
-hence no `ValidDate`. `SelectionResult` is ours; no registered template exists for it.
+`TechnicalData` and `PowerDriveTrainSizing` follow templates of IDTA; `SelectionResult` is ours, since no registered
+template has the checks. Beside them lie the parts that every file carries, the motion as CSV, and the report.
 
 The library writes metamodel 3.1, whose elements are those of 3.0 as far as they are used here: the namespace tells
 which one a package claims. Most other tools read 3.0 alone.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from datetime import UTC
 from io import BytesIO
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
@@ -21,38 +18,20 @@ from pyecma376_2.core_properties import OPCCoreProperties
 
 from hpn.account.account import UNLIMITED, CheckLine
 from hpn.account.lines import Line, LineTable, Value
-from hpn.account.published import line_of
-from hpn.engine.candidates import Candidate
-from hpn.engine.checks import BY_CODE
 from hpn.files.aas import Metamodel
-from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, published, reference, texts, told, urn
+from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, reference, texts, told, urn
+from hpn.files.aas.sections import CSV_TYPE
+from hpn.files.aas.sizing import files_of, sizing
+from hpn.files.aas.technical import technical_data
 from hpn.files.carried import APPLICATION, DOCUMENT, RESULT, carried
-from hpn.files.export import LOSS_FREE, Export
+from hpn.files.export import DIGITS, LOSS_FREE, Export, made_by
+from hpn.installed import has_extra
 from hpn.words.reader import Reader
 from hpn.words.units import symbol_of
 from hpn.words.wording import Sentence
 
 VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
 """Figures of a phase in which torque or speed varies."""
-
-MANUFACTURER = "Harmonic Drive AG"
-TECHNICAL_DATA = "https://admin-shell.io/ZVEI/TechnicalData/"
-GENERAL_INFORMATION = {
-    "ManufacturerName": "0173-1#02-AAO677#002",
-    "ManufacturerProductDesignation": "0173-1#02-AAW338#001",
-    "ManufacturerArticleNumber": "0173-1#02-AAO676#003",
-    "ManufacturerOrderCode": "0173-1#02-AAO227#002",
-}
-"""Elements of the template and their semantic ids, as the template of IDTA gives them."""
-
-ARTICLE_NUMBER = {
-    "en": "Designation of the gear: the manufacturer’s engineering data print no article number.",
-    "de": "Bezeichnung des Getriebes: Die Projektierungsunterlagen des Herstellers nennen keine Artikelnummer.",
-}
-ORDER_CODE = {
-    "en": "Ordering code as far as it is known: output version and motor adapter follow (table 9.1).",
-    "de": "Bestellschlüssel, soweit bekannt: Abtriebsausführung und Motoradapter folgen (Tab. 9.1).",
-}
 
 WRITTEN: Metamodel = "3.1"
 NAMESPACES: Mapping[Metamodel, bytes] = {
@@ -64,15 +43,24 @@ DATA_PART, PARTS = "/aasx/data.xml", "/aasx/"
 CARRIED = {APPLICATION: "Application", RESULT: "Result", DOCUMENT: "Document"}
 """Parts that a package carries as JSON, and what the submodel calls them."""
 
+REPORT, PDF_TYPE = PARTS + "report.pdf", "application/pdf"
+
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
 """Earliest time that a zip entry can have; the content says when the selection was saved."""
 
 
 def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
-    """The .aasx package on an export in a version of the metamodel; the same bytes for the same selection."""
+    """The .aasx package on an export in a version of the metamodel; the same bytes for the same selection.
+
+    The report is in it where its extra is installed.
+    """
     files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
-    for name, part in carried(replace(export, made=None), Reader()).items():
+    for name, part in carried(export, Reader()).items():
         files.add_file(PARTS + name, BytesIO(part), "application/json")
+    for path, course in files_of(export).items():
+        files.add_file(path, BytesIO(course), CSV_TYPE)
+    if has_extra("report"):
+        files.add_file(REPORT, BytesIO(made_by("hpn.files.report.pdf:pdf", export, Reader(digits=DIGITS))), PDF_TYPE)
     packed = BytesIO()
     with aasx.AASXWriter(packed, failsafe=False) as writer:
         writer.write_core_properties(_properties(export))
@@ -82,10 +70,10 @@ def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
 
 def environment(export: Export) -> model.DictIdentifiableStore[model.Identifiable]:
     """Shell, submodels and concept descriptions of an export."""
-    submodels = [_selection_result(export)]
+    submodels = [sizing(export), _selection_result(export)]
     suitable = export.candidate.status == "suitable"
     if suitable:
-        submodels.insert(0, _technical_data(export))
+        submodels.insert(0, technical_data(export))
     kind = model.AssetKind.TYPE if suitable else model.AssetKind.NOT_APPLICABLE
     shell = model.AssetAdministrationShell(
         model.AssetInformation(kind, global_asset_id=urn("asset", export.link)),
@@ -106,95 +94,6 @@ class _InOrder(set[model.ModelReference[model.Submodel]]):
         return iter(sorted(super().__iter__(), key=str))
 
 
-# --- Technical data ---------------------------------------------------------------------------------------------------
-
-
-def _technical_data(export: Export) -> model.Submodel:
-    return model.Submodel(
-        urn("technical-data", export.link),
-        [_general_information(export), _technical_properties(export), _further_information(export)],
-        id_short="TechnicalData",
-        administration=model.AdministrativeInformation(version="1", revision="2"),
-        semantic_id=reference(TECHNICAL_DATA + "Submodel/1/2"),
-    )
-
-
-def _general_information(export: Export) -> model.SubmodelElementCollection:
-    designation = export.candidate.designation
-    names = {"en": f"{designation} planetary gear", "de": f"{designation} Planetengetriebe"}
-    ids = {name: reference(value) for name, value in GENERAL_INFORMATION.items()}
-
-    def element(name: str, value: str, description: Mapping[str, str] | None = None) -> model.Property:
-        text = model.MultiLanguageTextType(dict(description)) if description else None
-        return model.Property(name, str, value, semantic_id=ids[name], description=text)
-
-    return model.SubmodelElementCollection(
-        "GeneralInformation",
-        [
-            element("ManufacturerName", MANUFACTURER),
-            model.MultiLanguageProperty(
-                "ManufacturerProductDesignation",
-                model.MultiLanguageTextType(names),
-                semantic_id=ids["ManufacturerProductDesignation"],
-            ),
-            element("ManufacturerArticleNumber", designation, ARTICLE_NUMBER),
-            element("ManufacturerOrderCode", designation, ORDER_CODE),
-        ],
-        semantic_id=reference(TECHNICAL_DATA + "GeneralInformation/1/1"),
-    )
-
-
-def _technical_properties(export: Export) -> model.SubmodelElementCollection:
-    """Published figures; what is not published is left out."""
-    account, candidate = export.account, export.candidate
-    figures: dict[str, Value | None] = {"size": candidate.size, "ratio": candidate.ratio, "stages": candidate.stages}
-    lines = [line_of(account.gear, "ratio"), *account.published] if account.gear else []
-    figures |= {published(_name(line)): line.value for line in lines}
-    if not lines:
-        figures |= {published(name): value for name, value in _limits(candidate)}
-    sources = {published(_name(line)): line.source for line in lines if line.source}
-    return model.SubmodelElementCollection(
-        "TechnicalProperties",
-        _properties_of(figures, sources),
-        semantic_id=reference(TECHNICAL_DATA + "TechnicalProperties/1/1"),
-    )
-
-
-def _limits(candidate: Candidate) -> Iterator[tuple[str, Value | None]]:
-    """Published figures that are the limit of a load check: what a kept answer says without its catalogue."""
-    for check in candidate.checks:
-        known = BY_CODE.get(check.code)
-        if known and known.group == "load" and known.limited_by and known.unit == symbol_of(known.limited_by):
-            yield known.limited_by, check.limit
-
-
-def _further_information(export: Export) -> model.SubmodelElementCollection:
-    statement = {
-        "en": (
-            "Figures of the manufacturer’s engineering data, written by an independent tool; not a statement of the "
-            "manufacturer."
-        ),
-        "de": "Angaben aus den Projektierungsunterlagen des Herstellers, von einem unabhängigen Werkzeug geschrieben; "
-        "keine Aussage des Herstellers.",
-    }
-    elements: list[model.SubmodelElement] = [
-        model.MultiLanguageProperty(
-            "TextStatement01",
-            model.MultiLanguageTextType(statement),
-            semantic_id=reference(TECHNICAL_DATA + "TextStatement/1/1"),
-        )
-    ]
-    if export.created:
-        day = model.datatypes.Date(*export.created.astimezone(UTC).timetuple()[:3])
-        valid = reference(TECHNICAL_DATA + "ValidDate/1/1")
-        elements.append(model.Property("ValidDate", model.datatypes.Date, day, semantic_id=valid))
-    return model.SubmodelElementCollection(
-        "FurtherInformation",
-        elements,
-        semantic_id=reference(TECHNICAL_DATA + "FurtherInformation/1/1"),
-    )
-
-
 # --- Selection --------------------------------------------------------------------------------------------------------
 
 
@@ -202,6 +101,7 @@ def _selection_result(export: Export) -> model.Submodel:
     elements: list[model.SubmodelElement] = [
         *_texts(export),
         *(model.File(id_short, "application/json", PARTS + name) for name, id_short in CARRIED.items()),
+        *([model.File("Report", PDF_TYPE, REPORT)] if has_extra("report") else []),
         model.SubmodelElementCollection("Duty", _duty(export)),
         *_cycle(export),
         model.SubmodelElementCollection("Figures", _calculated(export)),
