@@ -14,6 +14,8 @@ from hpn.application import Application
 from hpn.catalogue import HANDBOOK_FOLDER, load_catalogue
 from hpn.catalogue.tables import TABLES
 from hpn.engine.selection import select
+from hpn.files.aas.courses import LINEAR, ROTATIVE
+from hpn.files.aas.sizing_ids import meaning
 from hpn.files.export import Export
 from hpn.files.workbook.workbook import workbook
 from hpn.fleet.columns import COLUMNS as FLEET
@@ -25,6 +27,7 @@ from hpn.web.pages.transfer import write_table
 from hpn.words.reader import Reader
 from tests.build import LIFTING, TURNING, cycle, phase, worked_example
 from tests.fleet.tables import in_long_form, row_of, write
+from tests.report.sizings import element, section, shell
 
 Json = dict[str, Any]
 
@@ -126,6 +129,20 @@ PAIRS = tuple(
     json.dumps(entry).encode()
     for entry in (*({**one, "motors": MOTORS} for one in PAIRED), {"name": "Ours", "motors": MOTORS})
 )
+SIZINGS = tuple(
+    json.dumps(shell([section(kind, columns, "/aasx/a.csv", **constants)], mechanism)).encode()
+    for kind, columns, constants, mechanism in (
+        ("RotativeSection", ROTATIVE, {"LoadTorque": -40.0, "RadialForce": 500, "MomentOfInertiaOfLoad": 0.5}, None),
+        (
+            *("LinearSection", LINEAR, {"LoadMass": 80, "FrictionForce": 20.5, "CounterMass": 10}),
+            element("SpindleDrive", [element("FeedConstant", 0.01), element("InclinationAngle", 0.3)], "Entity"),
+        ),
+    )
+)
+MEANINGS = tuple(
+    meaning(name).encode() for name in ("LoadTorque", "LoadMass", "FeedConstant", "MotionSectionFile", "Efficiency")
+)
+"""Sizings in JSON, without the course of their motion, and meanings of their elements."""
 MACHINES = tuple(
     json.dumps(machine).encode()
     for machine in (

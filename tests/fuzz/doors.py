@@ -4,9 +4,11 @@ import hashlib
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from random import Random
 from urllib.parse import quote, urlencode
+from zipfile import ZipFile
 
 import msgspec
 import pyarrow.parquet as pq
@@ -34,6 +36,7 @@ LONGEST_ADDRESS = 65_000
 FORM = (b"content-type", b"application/x-www-form-urlencoded")
 JSON = (b"content-type", b"application/json")
 LINES = (b"content-type", b"application/x-ndjson")
+PACKAGE = (b"content-type", b"application/asset-administration-shell-package")
 FILE = (b"content-type", b"multipart/form-data; boundary=boundary")
 EDIT = ((b"hx-request", b"true"), (b"hx-target", b"section#result"))
 READERS: tuple[tuple[Header, ...], ...] = ((), ((b"cookie", b"hpn_language=de; hpn_units=lb_in.lbf"),))
@@ -216,6 +219,17 @@ async def _supplement(world: World, random: Random, content: bytes) -> str:
     return "accepted"
 
 
+async def _sizing(world: World, random: Random, content: bytes) -> str:
+    """Open a package with a broken environment beside a whole course."""
+    course = random.choice((b"Time,AngularVelocity\n0,0\n1,9\n", b"Time,LinearVelocity\n0,0\n1,0.5\n2,0\n"))
+    with BytesIO() as made:
+        with ZipFile(made, "w") as package:
+            package.writestr("aasx/data.json", content)
+            package.writestr("aasx/a.csv", course)
+        body = made.getvalue()
+    return judged(await world.call("POST", "/api/v1/sizing", headers=[PACKAGE], body=body), api=True)
+
+
 _FILES = {table.file.encode() for table in TABLES}
 
 
@@ -244,6 +258,7 @@ DOORS = {
     "supplement": Door(_supplement, corpus.SUPPLEMENTS, corpus.COLUMNS),
     "fleet": Door(_fleet, corpus.FLEETS, corpus.FLEET_COLUMNS),
     "pairs": Door(_pairs, corpus.PAIRS, corpus.MARKS),
+    "sizing": Door(_sizing, corpus.SIZINGS, corpus.MEANINGS),
     "machine": Door(_machine, corpus.MACHINES, corpus.MARKS),
     "json": Door(_json, (*corpus.JSON, *corpus.JSON, *corpus.BATCHES, *corpus.SAVES), corpus.MARKS),
 }

@@ -113,6 +113,7 @@ def hostile(saved: str, *, whole: bool) -> Iterator[Hostile]:
     yield from (Hostile("GET", path) for path in ("/healthz", "/readyz", "/metrics", "/static/none", "/oembed"))
     yield Hostile("POST", "/api/v1/motors/HPN-20A-5", LONG_JSON, JSON)
     yield Hostile("POST", "/api/v1/pairs", LONG_JSON, JSON)
+    yield Hostile("POST", "/api/v1/sizing", NESTED.replace(b'"a"', b'"submodelElements"'), JSON)
     yield Hostile("POST", "/api/v1/motor-lists", LONG_JSON, JSON)
     yield Hostile("PUT", "/api/v1/motor-lists/server", LONG_JSON, JSON)
     yield from (Hostile(method, "/api/v1/motor-lists/" + "a" * 60_000) for method in ("GET", "DELETE"))

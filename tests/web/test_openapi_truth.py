@@ -67,6 +67,7 @@ OPERATIONS = {
     "pairMotors": "POST /api/v1/pairs",
     "putAxis": "PUT /api/v1/machines/{id}/axes/{number}",
     "putMotorList": "PUT /api/v1/motor-lists/{id}",
+    "readSizing": "POST /api/v1/sizing",
     "removeAxis": "DELETE /api/v1/machines/{id}/axes/{number}",
     "renameSelection": "PATCH /api/v1/selections/{id}",
     "saveMachine": "POST /api/v1/machines",

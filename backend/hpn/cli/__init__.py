@@ -101,7 +101,9 @@ def _parser() -> argparse.ArgumentParser:
         help="print versions of engine and catalogue",
     )
     commands = parser.add_subparsers(metavar="command", dest="command", parser_class=argparse.ArgumentParser)
-    one = commands.add_parser("select", help="select a gear for an application file (JSON; - for standard input)")
+    one = commands.add_parser(
+        "select", help="select a gear for an application file (JSON, or AASX with a sizing; - for standard input)"
+    )
     one.add_argument("file")
     form = one.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print the whole reply of the API; the default into a pipe")

@@ -11,9 +11,10 @@ from hpn.catalogue import load_catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
 from hpn.engine.selection import Selection, encode, select
+from hpn.files.aas.opened import is_shell, opened
 from hpn.links.writer import to_link
 from hpn.web.settings import Settings
-from hpn.words.wording import telling_decimals
+from hpn.words.wording import MendableError, telling_decimals
 
 MAXIMUM_FILE_BYTES = 32_000_000
 """Of an application: 10,000 phases, however they are laid out."""
@@ -34,9 +35,21 @@ def run(options: argparse.Namespace) -> int:
 def _application(name: str) -> Application:
     """The application of a file; raises ValidationError, and InputError for a name twice in one object."""
     content = _content(name)
+    if is_shell(content):
+        content = _of_sizing(name, content)
     application = Application.model_validate_json(content)
     require_unique(content)
     return application
+
+
+def _of_sizing(name: str, content: bytes) -> bytes:
+    """JSON of the application in a sizing by IDTA 02021; what is not used of it goes to standard error."""
+    found = opened(content)
+    if found.problem:
+        raise MendableError(f"{name}: {found.problem.text}")
+    for place in found.unused:
+        print(f"not used: {place}", file=sys.stderr)
+    return found.text.encode()
 
 
 def _content(name: str) -> bytes:

@@ -36,6 +36,7 @@ from hpn.web.api import (
     select,
     selection_revisions,
     selections,
+    sizings,
 )
 from hpn.web.door import problems, readers
 from hpn.web.door.access import Gate
@@ -118,6 +119,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     health.metrics_router,
     openapi.router,
     select.router,
+    sizings.router,
     batch.router,
     fleet.router,
     catalogue.router,

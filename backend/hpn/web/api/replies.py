@@ -165,6 +165,13 @@ class EnvelopeReply(Reply, frozen=True):
     ]
 
 
+class SizingReply(Reply, frozen=True):
+    """What a sizing of another tool comes to."""
+
+    application: Annotated[Any, Field(description="The application, as POST /api/v1/select takes it.")]
+    unused: Annotated[tuple[str, ...], Field(description="Paths of the elements of which nothing was taken.")]
+
+
 # --- Saved selections -------------------------------------------------------------------------------------------------
 
 Id = Annotated[str, Field(description="Its id: 128 random bits.")]

@@ -7,6 +7,7 @@ comes along as the field `link`, so that nothing typed is lost on the way.
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from urllib.parse import urlencode
 
 from fastapi import APIRouter
@@ -17,6 +18,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import pointer, sentence_of
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
+from hpn.files.aas.opened import Opened, is_shell, opened
 from hpn.links.row_symbols import PHASE_BY_NAME
 from hpn.links.rows import TEXT, TOLERANCE, filled, used_columns
 from hpn.links.symbols import BY_NAME
@@ -29,7 +31,7 @@ from hpn.tables.sheets import MAXIMUM_CHARACTERS, SEPARATORS
 from hpn.tables.table import Table
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.bodies import pairs_of, parsed
-from hpn.web.door.pools import compute, worked
+from hpn.web.door.pools import compute, compute_beside, worked
 from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
@@ -54,7 +56,7 @@ class PasteDraft:
     """State of the page: the form that it came from, what was given, and what can be made of it.
 
     `of` names what the choices belong to: they end when another text or file is given. `book` carries a file along that
-    is no text, where no script sends it again.
+    is no text, where no script sends it again. `unused` are elements of a sizing of which nothing was taken.
     """
 
     link: str
@@ -68,6 +70,7 @@ class PasteDraft:
     sheets: tuple[str, ...] = ()
     sheet: str = ""
     book: str = ""
+    unused: tuple[str, ...] = ()
 
 
 def start(request: Request) -> Response:
@@ -80,7 +83,10 @@ async def paste(request: Request) -> Response:
     post = PastePost()
     try:
         post = await compute(request, "pages", _given, await read_parts(request))
-        reading = Reading()
+        reading, content = Reading(), post.file or post.text.encode(errors="replace")
+        if is_shell(content):
+            found = await compute_beside(request, "files", partial(opened, content))
+            return await compute(request, "pages", _of_sizing, request, post, found)
         if post.file or post.text.strip():
             reading = await read(request, post.file or post.text, WANTED, post.fields)
         return await compute(request, "pages", _answer, request, post, reading)
@@ -140,6 +146,15 @@ def _of_application(request: Request, link: str, text: str, take: str) -> Respon
         of_axis = (pair for pair in pairs_of(link) if pair[0] in OF_AXIS)
         return _proceed(request, [*pairs_of(query), *of_axis])
     return _render(request, draft, 422 if draft.problems else 200)
+
+
+def _of_sizing(request: Request, given: PastePost, found: Opened) -> Response:
+    """Preview of what another tool has sized; taking it follows, once it was seen what is not used."""
+    if found.problem:
+        return _render(request, PasteDraft(given.link, problems=(found.problem,)), 422)
+    if given.fields.get("take"):
+        return _of_application(request, given.link, found.text, "all")
+    return _render(request, replace(_opened(given.link, found.text), unused=found.unused), 200)
 
 
 def _opened(link: str, text: str) -> PasteDraft:
