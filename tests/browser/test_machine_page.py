@@ -116,11 +116,12 @@ def test_an_axis_is_added_without_leaving_the_table(visitor: Visitor, machine: s
     page.get_by_role("combobox", name="with the values of").select_option("Infeed belt")
     page.get_by_role("button", name="Add axis").click()
 
-    expect(page.get_by_role("row", name="Lift")).to_contain_text("HPN-")
+    expect(page.locator("#axis-5")).to_contain_text("Lift")
+    expect(page.locator("#axis-5")).to_contain_text("HPN-")
     expect(page.get_by_role("link", name="Open Lift")).to_be_visible()
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_text("Undone.")).to_be_visible()
-    expect(page.get_by_role("row", name="Lift")).to_have_count(1)  # Pallet lift
+    expect(page.locator("#axis-5")).to_have_count(0)
 
 
 @pytest.mark.parametrize("width", [1440, 390])
@@ -147,16 +148,18 @@ def test_common_tolerances_are_typed_beside_the_common_values(visitor: Visitor, 
 def test_a_long_change_shows_its_count_and_is_stopped_without_a_trace(visitor: Visitor, server: str) -> None:
     phases = [{"torque_Nm": 21, "speed_rpm": 150, "duration_s": 0.3}] * 8
     tolerances = {"torque_Nm": {"percent": 5}, "speed_rpm": {"percent": 3}, "duration_s": {"percent": 2}}
-    axes = [{"name": f"A{k}", "application": {"duty_cycle": {"phases": phases, "pause_s": 0.4}}} for k in range(2000)]
+    axes = [{"name": f"A{k}", "application": {"duty_cycle": {"phases": phases, "pause_s": 0.4}}} for k in range(1200)]
     body = {"axes": axes, "common": {"tolerances": tolerances}}
-    machine = str(httpx.post(f"{server}/api/v1/machines", json=body, trust_env=False, timeout=60).json()["url"])
-    page = visitor.open(f"{machine}?edit=common")
+    machine = str(httpx.post(f"{server}/api/v1/machines", json=body, trust_env=False, timeout=600).json()["url"])
+    page = visitor.open()
+    page.route("**/kinds", lambda route: route.fulfill(body=""))  # which would keep the server busy after this test
+    page.goto(f"{server}{machine}?edit=common")
     page.get_by_label("Maximum utilisation").fill("0.5")
-    apply, work = page.get_by_role("button", name="Apply to 2"), page.get_by_role("region", name="Sizing again")
+    apply, work = page.get_by_role("button", name="Apply to 1"), page.get_by_role("region", name="Sizing again")
     expect(apply).to_be_visible()
 
     apply.click()
-    expect(work).to_contain_text("of 2")
+    expect(work).to_contain_text("of 1")
     work.get_by_role("button", name="Stop").click()
 
     expect(page.get_by_text("Stopped: nothing was changed")).to_be_visible()

@@ -92,6 +92,9 @@ def test_an_axis_that_does_not_hold_over_its_tolerance_says_so_and_is_counted(cl
     assert "not over the whole tolerance" in row(page, "Wide")
     assert "not over the whole tolerance" not in row(page, "Exact")
     assert "1 not over the whole tolerance" in text_of(page) and "2 suitable" in text_of(page)
+    (address,) = set(re.findall(r'href="([^"]*show=inside[^"]*)"', page))
+    chosen = client.get(address.partition("#")[0]).text
+    assert "Don’t hold 1" in text_of(chosen) and len(re.findall(r'id="axis-\d+"', chosen)) == 1
 
 
 def test_an_axis_without_a_gear_says_what_would_mend_it_and_an_open_one_what_is_missing(

@@ -89,7 +89,7 @@ def test_a_large_machine_is_compared_by_itself(
     assert 'aria-label="changed since revision A"' in page
     assert panel(client.get(f"{machine}/since").text) == at_once
     fresh = client.post("/api/v1/machines", json={"axes": [{"application": BELT}]}).json()["url"]
-    assert client.get(f"{fresh}/since").status_code == 404
+    assert client.get(f"{fresh}/since").headers["location"] == f"{fresh}/revisions"
 
 
 def test_an_axis_is_added_from_the_table_and_undone(client: TestClient, machine: str) -> None:

@@ -9,14 +9,14 @@ from functools import cached_property
 
 from fastapi import APIRouter
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import RedirectResponse, Response
 
 from hpn.documents.revision import NOW
 from hpn.files.machine.changes import DifferencesExport
 from hpn.store import Machine, RevisionLine
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
-from hpn.web.door.problems import Problem, needs
+from hpn.web.door.problems import needs
 from hpn.web.door.visit import current
 from hpn.web.machines import FEW_AXES, found
 from hpn.web.pages.machine_view import ADDRESS, REASON
@@ -24,12 +24,9 @@ from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.revisions_view import Compared, ComparedAxis
 from hpn.web.states import State, catalogues_of, documents_of, states_of
 from hpn.words.reader import Reader
-from hpn.words.wording import N_
 
 MOST_SHOWN, MOST_CELLS = 12, 3
 """Axes and cells of each that stand beside the table."""
-
-NO_REVISION = N_("This machine has no revision yet: there is nothing to compare it with.")
 
 
 @dataclass(frozen=True)
@@ -118,11 +115,11 @@ async def since_of(
 
 @or_reason(REASON)
 async def show_since(request: Request) -> Response:
-    """Changes of a machine of any size since its latest revision."""
+    """Changes of a machine of any size since its latest revision; one without leads to where the first is saved."""
     machine = await found(request, request.path_params["machine"], None, "machine")
     since = await since_of(request, machine, await request.app.state.store.revisions(machine.id), whole=True)
     if since is None:
-        raise Problem(404, NO_REVISION)
+        return RedirectResponse(f"{ADDRESS}/{machine.id}/revisions", 303)
     return await compute(request, "batches", page, request, "machine_since.html", saved=machine, since=since)
 
 

@@ -23,8 +23,9 @@ REASON = "machine_refused.html"
 
 ROWS_ON_PAGE = 100
 
-SHOWN = {"": N_("All"), "todo": N_("To do"), "changed": N_("Changed")}
-"""Filters of axes: those without a suitable gear, and those changed since the latest revision."""
+SHOWN = {"": N_("All"), "todo": N_("To do"), "inside": N_("Don’t hold"), "changed": N_("Changed")}
+"""Filters of axes: those without a suitable gear, those whose suitable gear does not hold over the whole tolerance, and
+those changed since the latest revision."""
 
 MARGINS = ("unsuitable", "unrated", "open", "suitable")
 """Verdicts in the order in which axes need somebody."""
@@ -146,6 +147,7 @@ class Chosen:
             row
             for row in rows
             if (self.show != "todo" or row.status != "suitable")
+            and (self.show != "inside" or row.fails_inside)
             and (self.show != "changed" or row.axis.number in changed)
             and (not self.gear or row.gear == self.gear)
             and any(word in text.casefold() for text in (row.name, row.gear or "", row.axis.ordering_code or ""))
@@ -227,6 +229,8 @@ class MachineView:
         """Number of axes that a filter shows."""
         if show == "changed":
             return len(self.changed_axes)
+        if show == "inside":
+            return self.failing_inside
         return len(self.all) - (self.counts["suitable"] if show == "todo" else 0)
 
     @cached_property
