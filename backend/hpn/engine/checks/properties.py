@@ -1,8 +1,10 @@
 """Checks of properties, against what the user requires: temperature, backlash, stiffness, weight and length."""
 
+from typing import Any
+
 import numpy as np
 
-from hpn.engine.check import RATING_TABLES, Case, Check
+from hpn.engine.check import RATING_TABLES, Case, Check, Kind
 from hpn.physics.equations import FloatArray
 from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.wording import N_
@@ -37,6 +39,21 @@ def _permitted_error(case: Case) -> FloatArray:
     return np.where(np.isnan(angle), by_length, angle)
 
 
+def _of_figure(figure: str, kind: Kind, **texts: Any) -> Check:
+    """Check of a published figure against the requirement of the same name; `texts` are further fields of `Check`."""
+    asked = f"requirements.{figure}"
+    return Check(
+        **texts,
+        kind=kind,
+        group="property",
+        limit_name=N_("your limit"),
+        asked=asked,
+        demand=lambda case: getattr(case.gears, figure),
+        limited_by=figure,
+        over={asked: "rising" if kind == "minimum" else "falling"},
+    )
+
+
 PROPERTIES: tuple[Check, ...] = (
     Check(
         code="ambient_temperature",
@@ -62,45 +79,35 @@ PROPERTIES: tuple[Check, ...] = (
         relation="t_min ≤ t_amb ≤ t_max",
         over={"requirements.ambient_temperature_degC": "ends"},
     ),
-    Check(
+    _of_figure(
+        "backlash_arcmin",
+        "maximum",
         code="backlash",
         name=N_("backlash"),
         title=N_("Backlash"),
         unit="arcmin",
-        kind="maximum",
-        group="property",
-        limit_name=N_("your limit"),
         source=N_("table 15.1"),
         tests=N_("The largest backlash of the gear stays within your limit."),
         consequence=N_("Positioning error and knocking at reversal."),
         basis=N_("The published figure is an upper limit for new gears and depends on the number of stages."),
         remedy=N_("Choose a single-stage ratio, or accept more backlash."),
-        asked="requirements.backlash_arcmin",
-        demand=lambda c: c.gears.backlash_arcmin,
-        limited_by="backlash_arcmin",
         relation="j ≤ j_req",
         accepted=N_("the backlash limit rises to {value}"),
-        over={"requirements.backlash_arcmin": "falling"},
     ),
-    Check(
+    _of_figure(
+        "torsional_stiffness_Nm_per_rad",
+        "minimum",
         code="torsional_stiffness",
         name=N_("torsional stiffness"),
         title=N_("Torsional stiffness"),
         unit="Nm/rad",
-        kind="minimum",
-        group="property",
-        limit_name=N_("your limit"),
         source=N_("table 15.2"),
         tests=N_("The torsional stiffness K_3 of the gear reaches the required one."),
         consequence=N_("The output winds up under torque and oscillates after a move."),
         basis=N_("K_3 holds above 15 % of the rated torque (glossary)."),
         remedy=N_("Choose a larger size."),
-        asked="requirements.torsional_stiffness_Nm_per_rad",
-        demand=lambda c: c.gears.torsional_stiffness_Nm_per_rad,
-        limited_by="torsional_stiffness_Nm_per_rad",
         relation="K_3 ≥ K_3,req",
         accepted=N_("the required torsional stiffness drops to {value}"),
-        over={"requirements.torsional_stiffness_Nm_per_rad": "rising"},
     ),
     Check(
         code="natural_frequency",
@@ -168,25 +175,20 @@ PROPERTIES: tuple[Check, ...] = (
         },
         proven=lambda c: c.duty.torque_both_ways,
     ),
-    Check(
+    _of_figure(
+        "weight_kg",
+        "maximum",
         code="weight",
         name=N_("weight"),
         title=N_("Weight"),
         unit="kg",
-        kind="maximum",
-        group="property",
-        limit_name=N_("your limit"),
         source=RATING_TABLES,
         tests=N_("The net weight of the standard version stays within your limit."),
         consequence=N_("The axis that carries the gear becomes slower."),
         basis=N_("Net weight without packing, by number of stages."),
         remedy=N_("Choose a smaller size or a single-stage ratio."),
-        asked="requirements.weight_kg",
-        demand=lambda c: c.gears.weight_kg,
-        limited_by="weight_kg",
         relation="m ≤ m_req",
         accepted=N_("the weight limit rises to {value}"),
-        over={"requirements.weight_kg": "falling"},
     ),
     Check(
         code="length",
