@@ -70,22 +70,22 @@ async def change(
     Raises ExcessError beyond the limits, and KeyReusedError and KeySpentError as `take`; the same key gives the numbers
     that it gave before.
     """
-    found = await _locked(connection, id)
-    if found is None:
+    machine = await _locked(connection, id)
+    if machine is None:
         return None
     if once is not None and (before := await take(connection, once.key, once.digest, id)) is not None:
         return order_of(before.part or "[]")
-    if found.version != made.version or not await _as_seen(connection, id, made):
+    if machine.version != made.version or not await _as_seen(connection, id, made):
         return None
-    now, order = datetime.now(UTC), order_of(found.axis_order)
-    numbers = [found.numbers + place for place in range(1, len(made.new) + 1)]
+    now, order = datetime.now(UTC), order_of(machine.axis_order)
+    numbers = [machine.numbers + place for place in range(1, len(made.new) + 1)]
     await insert_axes(connection, id, list(zip(numbers, made.new, strict=True)), now, made.by)
     await _update_axes(connection, id, made, now, order)
     values = await _document_values(connection, id, made, order, numbers)
     if made.is_of_document:
         values["version"] = documents.c.version + 1
-    values["numbers"] = found.numbers + len(numbers)
-    if found.saved is None:  # what nobody has saved is bounded in bytes
+    values["numbers"] = machine.numbers + len(numbers)
+    if machine.saved is None:  # what nobody has saved is bounded in bytes
         own = select(func.coalesce(func.sum(func.length(axes.c.application)), 0)).where(axes.c.document == id)
         values["bytes"] = own.scalar_subquery()
     await connection.execute(update(documents).where(documents.c.id == id).values(values))
@@ -181,14 +181,14 @@ async def freeze(
 
     Raises LabelTakenError, ExcessError, and as `take`.
     """
-    found = await _locked(connection, id)
-    if found is None:
+    machine = await _locked(connection, id)
+    if machine is None:
         return None
     if once is not None and (before := await take(connection, once.key, once.digest, id)) is not None:
         return before.part
-    if found.version != version or found.saved is None:
+    if machine.version != version or machine.saved is None:
         return None
-    c, now, number = revisions.c, datetime.now(UTC), found.revisions + 1
+    c, now, number = revisions.c, datetime.now(UTC), machine.revisions + 1
     same = select(c.label).where(c.document == id, c.label_key == draft.label.casefold())
     if (await connection.execute(same)).one_or_none() is not None:
         raise LabelTakenError(draft.label)

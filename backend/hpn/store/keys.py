@@ -48,8 +48,8 @@ async def take(connection: AsyncConnection, key: str, digest: str, document: str
 async def made_by(connection: AsyncConnection, key: str, digest: str) -> Made | None:
     """Result of a key; None for a new one. Raises as `take`."""
     c = idempotency_keys.c
-    found = select(c.digest, c.document, c.part, c.deleted).where(c.key_sha256 == hash_of(key))
-    held = (await connection.execute(found)).one_or_none()
+    query = select(c.digest, c.document, c.part, c.deleted).where(c.key_sha256 == hash_of(key))
+    held = (await connection.execute(query)).one_or_none()
     if held is None:
         return None
     if held.deleted is not None:

@@ -94,8 +94,8 @@ async def read_lines(
         last = _position(cursor, name)
         query = query.where(tuple_(key, c.id) < tuple_(*last) if is_falling else tuple_(key, c.id) > tuple_(*last))
     rows = list(await connection.execute(query))
-    found = [record(*row[:-1]) for row in rows[:limit]]
-    return found, _cursor(rows[limit - 1][-1], found[-1].id) if len(rows) > limit else None
+    lines = [record(*row[:-1]) for row in rows[:limit]]
+    return lines, _cursor(rows[limit - 1][-1], lines[-1].id) if len(rows) > limit else None
 
 
 TIMES, NUMBERS = ("saved", "created", "updated"), ("utilisation", "axes")

@@ -55,9 +55,9 @@ async def insert_machine(
     row["search_text"] = search_text(draft.title, draft.reference, draft.author)
     if draft.revisions:
         row |= {"revisions": len(draft.revisions), "revision": draft.revisions[-1][1].label}
-    asked = {(axis.answer["engine_version"], axis.answer["catalogue_version"]) for axis in draft.axes}
-    if len(asked) < 2:
-        row |= of_today(*next(iter(asked), (draft.engine_version, draft.catalogue_version)))
+    versions = {(axis.answer["engine_version"], axis.answer["catalogue_version"]) for axis in draft.axes}
+    if len(versions) < 2:
+        row |= of_today(*next(iter(versions), (draft.engine_version, draft.catalogue_version)))
     await connection.execute(documents.insert(), row)
     await insert_axes(connection, id, list(zip(numbers, draft.axes, strict=True)), now, draft.owner or draft.author)
     for number, (created, each) in enumerate(draft.revisions, start=1):
@@ -68,11 +68,11 @@ async def insert_machine(
 async def require_room(connection: AsyncConnection, caller: str, most_bytes: int) -> None:
     """Raise ShareSpentError for a caller with enough unsaved machines, NoRoomError where all take more than that."""
     c = documents.c
-    kept = c.saved.is_(None) & (c.created >= datetime.now(UTC) - UNSAVED_LASTS)
-    of_caller = select(func.count()).where(kept, c.caller == caller)
+    unsaved = c.saved.is_(None) & (c.created >= datetime.now(UTC) - UNSAVED_LASTS)
+    of_caller = select(func.count()).where(unsaved, c.caller == caller)
     if (await connection.execute(of_caller)).scalar_one() >= MOST_OF_CALLER:
         raise ShareSpentError(f"{MOST_OF_CALLER} machines of this caller are kept for a day without being saved")
-    taken = select(func.coalesce(func.sum(c.bytes), 0)).where(kept)
+    taken = select(func.coalesce(func.sum(c.bytes), 0)).where(unsaved)
     if (await connection.execute(taken)).scalar_one() > most_bytes:
         raise NoRoomError("the machines that nobody has saved take all the room that they may")
 
@@ -111,8 +111,8 @@ async def read_machine(
     if row is None:
         return None
     named = row._asdict()
-    order, found = order_of(named.pop("axis_order")), await read_axes(connection, id, numbers)
-    return Machine(**named, order=tuple(order), items=tuple(found[number] for number in order if number in found))
+    order, axes = order_of(named.pop("axis_order")), await read_axes(connection, id, numbers)
+    return Machine(**named, order=tuple(order), items=tuple(axes[number] for number in order if number in axes))
 
 
 async def read_axes(

@@ -115,10 +115,10 @@ async def take_stale(connection: AsyncConnection, versions: Versions, most: int,
     columns = [c[name] for name in NAMED]
     mine = update(documents).where(c.id.in_(select(taken.c.id)), free).values(today_taken=now)
     rows = list(await connection.execute(mine.returning(*columns, c.engine_version, c.catalogue_version)))
-    found = [Stale(**dict(zip(NAMED, row, strict=False)), is_of_today=tuple(row[-2:]) == versions) for row in rows]
-    asked = [each for each in found if each.kind == "selection" and not each.is_of_today]
-    contents = await _contents(connection, [each.id for each in asked])
-    return [replace(each, application=contents.get(each.id, b"")) for each in found]
+    stale = [Stale(**dict(zip(NAMED, row, strict=False)), is_of_today=tuple(row[-2:]) == versions) for row in rows]
+    selections = [each for each in stale if each.kind == "selection" and not each.is_of_today]
+    contents = await _contents(connection, [each.id for each in selections])
+    return [replace(each, application=contents.get(each.id, b"")) for each in stale]
 
 
 async def _contents(connection: AsyncConnection, ids: Sequence[str]) -> dict[str, bytes]:
@@ -133,8 +133,8 @@ async def settle(connection: AsyncConnection, stale: Stale, versions: Versions, 
     """Keep what a selection gets today, unless it has another revision since; None leaves it to be asked again."""
     c = documents.c
     own = update(documents).where(c.id == stale.id, c.revisions == stale.revisions)
-    asked = {} if values is None else {**values, "today_of": versions.key}
-    await connection.execute(own.values(today_taken=None, **asked))
+    columns = {} if values is None else {**values, "today_of": versions.key}
+    await connection.execute(own.values(today_taken=None, **columns))
 
 
 # --- Axes of machines -------------------------------------------------------------------------------------------------

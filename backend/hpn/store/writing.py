@@ -180,8 +180,8 @@ async def rename(
     ).one_or_none()
     if row is None:
         return False
-    found = _search_text(SimpleNamespace(**{**row._asdict(), **names}))
-    values = {**names, "search_text": found, "version": c.version + 1, "updated": datetime.now(UTC)}
+    search = _search_text(SimpleNamespace(**{**row._asdict(), **names}))
+    values = {**names, "search_text": search, "version": c.version + 1, "updated": datetime.now(UTC)}
     renamed = update(documents).where(*state).values(values).returning(c.id)
     return (await connection.execute(renamed)).one_or_none() is not None
 
