@@ -43,7 +43,7 @@ MEASURED := tests/browser/test_lighthouse.py
 TOGETHER := --ignore tests/browser --numprocesses 3 --dist loadfile --no-loadscope-reorder
 # Figures and decisions once more, as a processor without this one's vector loops and with other last bits has them: what
 # hangs on floating point, so that of the units neither words nor files nor the command line.
-WORDS := application catalogue_errors catalogue_files check_texts cli facts links motion_links motors plots supplements symbols translations words
+WORDS := application catalogue_errors catalogue_files check_texts cli facts fields hints link_messages links motion_links motors plots reader supplements symbols translations typed words
 NUMERIC := tests/reference tests/property tests/unit $(WORDS:%=--ignore tests/unit/test_%.py) --numprocesses 3 --dist loadfile --no-loadscope-reorder
 ELSEWHERE = env NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -m tests.last_bits)" HPN_TEST_LAST_BITS
 BROWSERS := tests/browser --ignore tests/browser/test_lighthouse.py --numprocesses 3 --dist load

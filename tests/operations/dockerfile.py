@@ -113,7 +113,7 @@ def _copy(image: Image, rest: str, stages: dict[str, Image], context: Path) -> N
     goal = image.place(target)
     for source in sources:
         if stage is not None:
-            shutil.copytree(stage.place(source), goal, symlinks=True, dirs_exist_ok=True)
+            shutil.copytree(stage.place(source), goal, symlinks=True, copy_function=os.link, dirs_exist_ok=True)
             continue
         found = sorted(path for path in context.glob(source) if not _ignored(path, context))
         assert found, f"the context has no {source}"

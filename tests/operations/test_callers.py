@@ -18,7 +18,7 @@ import orjson
 import pytest
 
 from tests.build import worked_example
-from tests.fuzz.costly import WORKBOOKS
+from tests.fuzz.costly import made
 from tests.operations.proxy import Proxy, proxied
 from tests.operations.service import Service, serving, until
 
@@ -55,6 +55,7 @@ class Trial:
 
 
 @cache
+@cache
 def fleet_of(axes: int) -> bytes:
     """A table of axes with one phase each."""
     rows = (b"a%d,40,250,1\n" % number for number in range(axes))
@@ -69,7 +70,7 @@ POOLS = {
     ),
     "lines": Trial(slow_lines, lambda client: client.post(BATCH, content=iter([LINE]), headers=LINES)),
     "files read": Trial(
-        lambda client, _: paste(client, WORKBOOKS["defined names"](), name="a.xlsx"),
+        lambda client, _: paste(client, made("defined names"), name="a.xlsx"),
         lambda client: paste(client, b"T;n;t\n1;2;3\n"),
     ),
     "fleets": Trial(
