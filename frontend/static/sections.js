@@ -8,7 +8,7 @@ const AHEAD = 400; // pixels below the edge of the window that count as in sight
 
 const isPart = (element) => element.matches("[data-part]");
 const isSeen = (part) => part.checkVisibility() && (part.localName !== "details" || part.open) && part.getBoundingClientRect().top < innerHeight + AHEAD;
-const isEmpty = (part) => part.childElementCount < 2; // a heading at most
+const isEmpty = (part) => !part.querySelector(":scope > :not(h2, h3, summary)");
 const addressOf = (part) => document.getElementById(part.id)?.dataset.part;
 const bring = (part) => isEmpty(part) && isSeen(part) && htmx.trigger(part, "unfold");
 

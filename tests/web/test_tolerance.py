@@ -281,3 +281,22 @@ def test_a_saved_selection_keeps_its_tolerances(api: TestClient) -> None:
     assert kept["result"]["tolerance"]["holds"] is False
     assert kept["application"]["tolerances"]["pause_s"] == {"percent": 50}
     assert api.get(f"/selections/{saved.json()['id']}").status_code == 200
+
+
+def test_the_worst_cycle_is_drawn_at_the_edge_of_its_tolerances(api: TestClient) -> None:
+    """Torque of a phase that is worst where it is high: the case reaches the band's edge, and not what was given."""
+    page = api.get(f"/?{EXAMPLE}&tol=T:10p", headers={"HPN-Parts": "tolerance"}).text
+    figure = page.partition('aria-labelledby="worst-cycle-heading"')[2].partition("</figure>")[0]
+    torque = {
+        kind: min(float(y) for y in re.findall(r"[ML][\d.]+ ([\d.]+)", d))
+        for kind, d in re.findall(r'<path class="(band|given|steps worst)" d="([^"]+)"', figure)[:3]
+    }
+
+    assert torque["steps worst"] == torque["band"] < torque["given"]
+
+
+def test_a_motion_has_no_worst_cycle_of_typed_phases(api: TestClient) -> None:
+    page = api.get("/?mech=rotary&J=0.8&mv=trapezoidal&ms=90&mt=0.8&tol=J:5p", headers={"HPN-Parts": "tolerance"}).text
+
+    assert "Deciding inputs" in page
+    assert "worst-cycle-heading" not in page

@@ -28,6 +28,7 @@ from hpn.explain.drawings.panels import (
 )
 from hpn.explain.drawings.picture import MOST_MARKED
 from hpn.explain.drawings.subject import Subject
+from hpn.physics.equations import FloatArray
 from hpn.words.quantities import DUTY, GEAR, INPUTS
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.units import suffix_of
@@ -54,10 +55,12 @@ def cycle_picture(
     reader: Reader = DEFAULT,
     governing: Sequence[int] = (),
     check: str | None = None,
+    given: Application | None = None,
 ) -> CyclePicture:
     """Picture of the cycle of an application, beside the limits of one gear where there is one.
 
-    The governing phases stand out, and so does the limit of the governing check.
+    The governing phases stand out, and so does the limit of the governing check. An application that is a case of one
+    with tolerances is drawn within those of the `given` one.
     """
     duty, cycle = subject.duty if subject else Duty.of([application]), application.duty_cycle
     torque, speed = _torque_levels(duty, subject, check), _speed_levels(duty, subject, check)
@@ -67,21 +70,36 @@ def cycle_picture(
         words = motion_words(cycle.motion, cycle.pause_s, duty)
         return CyclePicture(over_time(panels, axis, reader, governing), words, None)
     panels = [
-        _panel(N_("Torque"), TORQUE_HEIGHT, cycle, "torque_Nm", torque),
-        _panel(N_("Speed"), SPEED_HEIGHT, cycle, "speed_rpm", speed),
+        _panel(N_("Torque"), TORQUE_HEIGHT, cycle, "torque_Nm", torque, given),
+        _panel(N_("Speed"), SPEED_HEIGHT, cycle, "speed_rpm", speed, given),
     ]
     axis, note = _axis(cycle, axis_left(panels, reader))
     return CyclePicture(over_time(panels, axis, reader, governing), _in_words(cycle), note)
 
 
-def _panel(quantity: str, height: float, cycle: DutyCycle, name: str, levels: Sequence[Level]) -> Panel:
+def _panel(
+    quantity: str, height: float, cycle: DutyCycle, name: str, levels: Sequence[Level], given: Application | None
+) -> Panel:
     """Steps of one quantity, the pause at their end, and the peaks of phases that have any."""
     phases = cycle.load_phases
     rest = [0.0] if cycle.pause_s > 0 else []
     means = [*(getattr(phase, name) for phase in phases), *rest]
     peaks = [*_reached(phases, name), *rest]
-    values, extremes = (np.repeat(np.array(rows)[:, None], 2, axis=1) for rows in (means, peaks))
-    return Panel(quantity, suffix_of(name), height, values, levels, extremes if peaks != means else None)
+    values, extremes = _steps(means), _steps(peaks)
+    band = [_steps([*each, *rest]) for each in zip(*_within(given, name), strict=True)] if given else []
+    return Panel(quantity, suffix_of(name), height, values, levels, extremes if peaks != means else None, band)
+
+
+def _steps(values: Sequence[float]) -> FloatArray:
+    """Curve that keeps each value over its stretch."""
+    return np.repeat(np.array(values)[:, None], 2, axis=1)
+
+
+def _within(given: Application, name: str) -> list[tuple[float, float, float]]:
+    """Value of each phase as given, and the smallest and largest within its tolerance."""
+    ends = {interval.place: (interval.low, interval.high) for interval in given.intervals}
+    values = [getattr(phase, name) for phase in given.duty_cycle.load_phases]
+    return [(value, *ends.get(("phases", k, name), (value, value))) for k, value in enumerate(values)]
 
 
 # --- Time -------------------------------------------------------------------------------------------------------------

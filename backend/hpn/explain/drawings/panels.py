@@ -52,7 +52,11 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One diagram: a curve of values, shape (pieces, instants), with the peaks that each piece reaches beyond them."""
+    """One diagram: a curve of values, shape (pieces, instants), with the peaks that each piece reaches beyond them.
+
+    `band` has the values as given, and the smallest and largest within their tolerance, where the curve is a case of
+    these.
+    """
 
     quantity: str
     unit: str
@@ -60,11 +64,13 @@ class Panel:
     values: FloatArray
     levels: Sequence[Level] = ()
     peaks: FloatArray | None = None
+    band: Sequence[FloatArray] = ()
 
     @cached_property
     def extremes(self) -> Point:
         """Smallest and largest value, 0 included."""
-        known = self.values if self.peaks is None else np.concatenate((self.values.ravel(), self.peaks.ravel()))
+        peaks = () if self.peaks is None else (self.peaks,)
+        known = np.concatenate((self.values, *peaks, *self.band))
         return min(known.min().item(), 0.0), max(known.max().item(), 0.0)
 
     @cached_property
@@ -179,9 +185,13 @@ def _panel(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: R
     outline = [(left, zero), *points, (points[-1][0], zero)]
     add(drawing, "path", "area", d=path(outline, closed=True))
     add(drawing, "path", "zero", d=path([(left, zero), (RIGHT, zero)]))
+    if panel.band:
+        given, *ends = (_thinned(x, _heights(panel, top, each)) for each in panel.band)
+        add(drawing, "path", "band", d=path([*ends[0], *reversed(ends[1])], closed=True))
+        add(drawing, "path", "given", d=path(given))
     if panel.peaks is not None:
         add(drawing, "path", "peaks", d=path(_thinned(x, _heights(panel, top, panel.peaks))))
-    add(drawing, "path", "steps", d=path(outline))
+    add(drawing, "path", "steps worst" if panel.band else "steps", d=path(outline))
     _levels(drawing, panel, top, left, reader)
     _peaks(drawing, panel, top, axis, reader)
 

@@ -18,7 +18,8 @@ from hpn.engine.selection import Selection
 from hpn.engine.tolerance_words import tolerance_of
 from hpn.engine.tried import needed_of
 from hpn.explain.comparison import lighter_miss
-from hpn.explain.drawings import Pictures, Subject
+from hpn.explain.drawings import Pictures, Subject, cycle_picture
+from hpn.explain.drawings.cycle import CyclePicture
 from hpn.files.export import DIGITS
 from hpn.links.writer import to_link
 from hpn.web.door.visit import current
@@ -154,6 +155,24 @@ class Result:
     def worst_used(self) -> float | None:
         """Utilisation of the chosen gear in its worst case; None without tolerances or a number."""
         return self.chosen.worst.utilisation if isinstance(self.chosen.worst, WorstCase) else None
+
+    @property
+    def worst_cycle(self) -> CyclePicture | None:
+        """Typed cycle in the case in which the check that governs is worst, within its tolerances."""
+        line = self.over.governing if self.over else None
+        if (
+            line is None
+            or line.corner is None
+            or self.gear is None
+            or self.catalogue is None
+            or self.application is None
+        ):
+            return None
+        case = line.corner.application
+        if case.duty_cycle.motion is not None:
+            return None
+        subject = Subject(case, self.gear, self.catalogue, line.corner.candidate)
+        return cycle_picture(case, subject, current(), (), line.check.code, self.application)
 
     @property
     def failing_case(self) -> str:
