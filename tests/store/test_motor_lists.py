@@ -173,3 +173,13 @@ def test_a_table_is_kept_as_a_list_by_the_reader_of_tables(client: TestClient) -
         ("A", 1.5, 4e-5),
         ("B", 2.5, 8e-5),
     ]
+
+
+def test_no_motor_of_a_table_is_left_out_unsaid(client: TestClient) -> None:
+    headers, params = {"Content-Type": "text/csv"}, {"name": "Left out", "answer": "zeros:skip"}
+
+    wrong = client.post(ADDRESS, params=params, content=b"Motor;M_N [Nm]\nA;1.5\nB;x\n", headers=headers)
+    asked = client.post(ADDRESS, params=params, content=b"Motor;M_N [Nm]\nA;1.5\nB;0\n", headers=headers)
+
+    assert wrong.status_code == 422 and "no number above 0 are left out (1): row 3" in wrong.json()["detail"]
+    assert asked.status_code == 201 and asked.json()["motors"] == 1

@@ -169,7 +169,7 @@ class _MotorsInterpreter(Interpreter):
     def _figures(self) -> list[_Row]:
         """Motors by their rows: of a blank cell, and of one that is 0, what was answered."""
         name = next((column.place for column in self.columns if column.role == NAME), None)
-        rows, wrong, unnamed = list[_Row](), list[int](), list[int]()
+        rows, wrong, unnamed, zero = list[_Row](), list[int](), list[int](), list[int]()
         zeros, blanks = self._ask_zeros(), self._ask_blanks()
         above: dict[str, Any] = {}
         for number, cells, read in zip(self.body.numbers, self.body.rows, self.rows, strict=True):
@@ -185,16 +185,18 @@ class _MotorsInterpreter(Interpreter):
                 value = float(text) if text else float("nan")
                 if value == 0 and zeros != "skip":
                     continue
-                bad |= not (isfinite(value) and value > 0)
+                bad |= not (isfinite(value) and value >= 0)
                 values[place] = value
             if bad:
                 wrong.append(number)
+            elif 0 in values.values():
+                zero.append(number)
             elif not values["designation"]:
                 unnamed.append(number)
             else:
                 rows.append((number, values))
             above = above | values
-        for template, numbers in ((_WRONG, wrong), (_UNNAMED, unnamed)):
+        for template, numbers in ((NO_FIGURE, wrong), (NO_NAME, unnamed), (_ZERO, zero)):
             if numbers:
                 self.notes.append(Sentence(template, {"rows": _listed(numbers), "count": len(numbers)}))
         return rows
@@ -261,8 +263,9 @@ class _MotorsInterpreter(Interpreter):
 
 
 _POWER_PLACE = "rated_power_kW"
-_WRONG = N_("Motors with a cell that is no number above 0 are left out ({count}): row {rows}.")
-_UNNAMED = N_("Rows without a name are left out ({count}): row {rows}.")
+NO_FIGURE = N_("Motors with a cell that is no number above 0 are left out ({count}): row {rows}.")
+NO_NAME = N_("Rows without a name are left out ({count}): row {rows}.")
+_ZERO = N_("Motors with a figure of 0 are left out ({count}): row {rows}.")
 
 
 def _folded(name: str) -> str:

@@ -15,6 +15,7 @@ from starlette.responses import Response
 from hpn.application.faults import Fault
 from hpn.engine.motors import entries_of
 from hpn.store import MotorListDraft, MotorListLine
+from hpn.tables.motors import NO_FIGURE, NO_NAME
 from hpn.tables.reading import Reading
 from hpn.tables.table import Table
 from hpn.web import motor_lists
@@ -200,6 +201,7 @@ def _draft_of_table(reading: Reading, faults: Sequence[Sentence], name: str | No
     table = reading.table or Table(problem=Sentence(NO_TABLE))
     require_whole(table)
     motors, refused = motors_in(table)
+    refused += [note for note in table.notes if note.template in (NO_FIGURE, NO_NAME)]
     if refused:
         raise Problem(422, refused)
     try:
