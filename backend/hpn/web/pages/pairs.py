@@ -147,18 +147,11 @@ def _page(
     motors: list[MotorEntry],
     problems: list[Sentence],
 ) -> Response:
-    catalogue, view = request.app.state.catalogue, None
+    catalogue, view, application = request.app.state.catalogue, None, asked.application
     text = asked.own.get("fd", "").strip()
     least = positive(text, NO_RESONANCE) if text else None
-    problems += [one for one in (least, asked.ratio) if isinstance(one, Sentence)]
     wrong = asked.form.problems if asked.carried else ()
-    problems += [problem.message for problem in wrong]
-    application = asked.application
-    if application is None and not wrong:
-        problems.append(Sentence(NO_CYCLE))
-    needs = (least is not None or asked.ratio is not None) and not problems
-    if needs and application and not application.duty_cycle.motion and not application.requirements.load_inertia_kgm2:
-        problems.append(Sentence(NO_INERTIA))
+    problems += _problems_of(asked, least)
     if application is not None and motors and not problems:
         by = asked.own.get("by", "weight")
         view = PairsView(
@@ -189,6 +182,19 @@ def _page(
         "roles": MOTORS.by_role,
     }
     return page(request, "pairs.html", 422 if wrong else 200, **shown)
+
+
+def _problems_of(asked: Asked, least: float | Sentence | None) -> list[Sentence]:
+    """What is wrong with an application and the bounds of its pairs; none of a page that is opened without one."""
+    problems = [one for one in (least, asked.ratio) if isinstance(one, Sentence)]
+    problems += [problem.message for problem in asked.form.problems if asked.carried]
+    application = asked.application
+    if application is None and not problems:
+        return [Sentence(NO_CYCLE)]
+    needs = (least is not None or asked.ratio is not None) and not problems
+    if needs and application and not application.duty_cycle.motion and not application.requirements.load_inertia_kgm2:
+        problems.append(Sentence(NO_INERTIA))
+    return problems
 
 
 def positive(text: str, template: str) -> float | Sentence:
