@@ -16,6 +16,7 @@ from hpn.engine.selection import select
 from tests.build import answer, candidate, check, cycle, notices, phase, suitable, worked_example
 from tests.conftest import Supplement
 
+GEARS = "size,ratio,stages,source\n"
 RATINGS = "size,ratio,repeated_peak_torque_Nm,rated_torque_Nm,momentary_peak_torque_Nm,source\n"
 SIZES = (
     "size,maximum_input_speed_rpm,average_input_speed_rpm,ambient_temperature_minimum_degC,"
@@ -23,6 +24,8 @@ SIZES = (
 )
 WEIGHTS = "size,stages,weight_kg,source\n"
 LENGTHS = "size,stages,length_min_mm,length_max_mm,source\n"
+ACCURACY = "size,stages,backlash_arcmin,transmission_accuracy_arcmin,source\n"
+STIFFNESS = "size,stages,torsional_stiffness_Nm_per_rad,source\n"
 CURVES = "size,load_coefficient,axial_N,radial_N,source\n"
 EFFICIENCY = "size,ratio,torque_Nm,efficiency,source\n"
 
@@ -93,17 +96,19 @@ def test_the_version_follows_the_content_and_nothing_else(folder: Path, catalogu
 
 def test_a_new_size_needs_rows_alone(folder: Path, catalogue: Catalogue) -> None:
     rows = {
-        "gears": "99A,5,1,table 9.1\n99A,15,2,table 9.1\n",
-        "ratings": "99A,5,1500,900,2500,table 9.1\n99A,15,1500,900,2500,table 9.1\n",
-        "sizes": "99A,4000,2500,0,40,9000,8000,,table 9.1\n",
-        "weights": "99A,1,30,table 9.1\n99A,2,34,table 9.1\n",
-        "lengths": "99A,1,200,250,table 9.1\n99A,2,260,300,table 9.1\n",
-        "accuracy": "99A,1,5,8,table 9.1\n99A,2,7,10,table 9.1\n",
-        "stiffness": "99A,1,400000,table 9.1\n99A,2,400000,table 9.1\n",
+        "gears": GEARS + "99A,5,1,table 9.1\n99A,15,2,table 9.1\n",
+        "ratings": RATINGS + "99A,5,1500,900,2500,table 9.1\n99A,15,1500,900,2500,table 9.1\n",
+        "sizes": SIZES + "99A,4000,2500,0,40,9000,8000,,table 9.1\n",
+        "weights": WEIGHTS + "99A,1,30,table 9.1\n99A,2,34,table 9.1\n",
+        "lengths": LENGTHS + "99A,1,200,250,table 9.1\n99A,2,260,300,table 9.1\n",
+        "accuracy": ACCURACY + "99A,1,5,8,table 9.1\n99A,2,7,10,table 9.1\n",
+        "stiffness": STIFFNESS + "99A,1,400000,table 9.1\n99A,2,400000,table 9.1\n",
     }
     for stem, text in rows.items():
-        with (folder / f"{stem}.csv").open("a", encoding="utf-8") as file:
-            file.write(text)
+        path = folder / f"{stem}.csv"
+        columns = path.read_text(encoding="utf-8").splitlines()[0].split(",")
+        with path.open("a", encoding="utf-8") as file:
+            csv.DictWriter(file, columns, lineterminator="\n").writerows(csv.DictReader(io.StringIO(text)))
 
     grown = load_catalogue(folder)
     wishes = {"sizes": ["32A", "99A"]}
