@@ -21,7 +21,7 @@ EXTRAS = {"serve": "serve", "database": "serve", "machine": "serve", "fleet": "f
 EXIT_CODES = """exit codes:
   0    success: a gear is suitable, all rows are answered, nothing differs
   1    hpn select: no gear is suitable; other commands: stopped, or could not continue
-  2    what the caller gave can't be used: the text says why
+  2    what the caller gave can’t be used: the text says why
   3    hpn select: could not continue; hpn verify: a shown figure differs
   128+ ended by a signal"""
 COMMANDS = "select, fleet, machine, verify, catalogue, serve, mcp, database or key"

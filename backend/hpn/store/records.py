@@ -10,8 +10,10 @@ from hpn.catalogue import Catalogue
 
 
 def new_id() -> str:
-    """A new id."""
-    return secrets.token_urlsafe(16)
+    """A new id; none begins with the hyphen of a command's option."""
+    while (id := secrets.token_urlsafe(16)).startswith("-"):
+        pass
+    return id
 
 
 DocumentKind = Literal["selection", "machine"]

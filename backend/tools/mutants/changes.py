@@ -95,8 +95,8 @@ def _walk(node: ast.AST, scope: str) -> Iterator[Change]:
         return
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         scope = node.name if scope == "module" else f"{scope}.{node.name}"
-    elif isinstance(node, ast.Call) and _called(node) == "Check":
-        scope = f"CHECKS[{ast.literal_eval(node.keywords[0].value)}]"
+    elif isinstance(node, ast.Call) and (code := _code(node)):
+        scope = f"CHECKS[{code}]"
     yield from ((scope, place, text) for place, text in _replacements(node))
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "decorator_list", "bases") or (
@@ -106,6 +106,14 @@ def _walk(node: ast.AST, scope: str) -> Iterator[Change]:
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
                 yield from _walk(child, scope)
+
+
+def _code(node: ast.Call) -> str:
+    """Code of the check that a call declares, by itself or through a function; blank for any other call."""
+    given = (keyword.value for keyword in node.keywords if keyword.arg == "code")
+    return next(
+        (value.value for value in given if isinstance(value, ast.Constant) and isinstance(value.value, str)), ""
+    )
 
 
 def _replacements(node: ast.AST) -> Iterator[tuple[ast.expr | ast.stmt | ast.keyword, str]]:

@@ -28,7 +28,7 @@ LLMS = """# HPN Select
 > Selects a Harmonic Drive HPN planetary gear for a duty cycle, and shows each limit with its equation and page.
 
 Independent of the manufacturer: check a selection with the manufacturer before ordering. Torque and speed are at the
-gear's output; the names of fields end in their units. Never make up an input: ask the user for it.
+gear’s output; the names of fields end in their units. Never make up an input: ask the user for it.
 
 ## For agents
 
