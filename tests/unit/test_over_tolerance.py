@@ -3,6 +3,7 @@
 import pytest
 
 from hpn.account.account import Account
+from hpn.account.inputs import lines_of
 from hpn.account.over_tolerance import OverTolerance, over_tolerance
 from hpn.application import Application, InputError
 from hpn.application.tolerances import Tolerance
@@ -213,3 +214,11 @@ def test_the_share_of_failing_cases_has_a_bound_above_zero(catalogue: Catalogue)
 
     assert over.share is not None and over.share.failing == 0
     assert 0 < over.share.upper < 0.001
+
+
+@pytest.mark.parametrize(("worst", "said"), [(True, ["by the worst case"]), (False, [])])
+def test_how_gears_are_judged_is_an_input_in_words_where_it_is_no_default(worst: bool, said: list[str]) -> None:
+    wishes = {"over_tolerance": worst}
+    application = Application.model_validate(cycle(phase(40, 250), requirements=wishes))
+    lines = lines_of(application, ["requirements.over_tolerance"])
+    assert [line.shown(Reader()) for line in lines] == said

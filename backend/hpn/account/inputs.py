@@ -9,6 +9,7 @@ from hpn.application import Application, DutyCycle
 from hpn.application.motion import Motion
 from hpn.words.motion import MOTION
 from hpn.words.quantities import INPUTS
+from hpn.words.terms import JUDGED
 from hpn.words.titles import row_label
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Named
@@ -25,6 +26,7 @@ UNSAID: Mapping[str, Value] = {
     "requirements.position_error_at": "cycle",
     "requirements.rest_friction_Nm": 0.0,
     "output_load.from_motion": False,
+    "requirements.over_tolerance": False,
 }
 """Inputs whose default nobody needs to read, as it asks for nothing."""
 
@@ -57,7 +59,9 @@ def _value(application: Application, path: str) -> Any:
 def _line(code: str, named: Named, value: Any = None, kind: Kind = "entered") -> Line:
     if isinstance(value, tuple):
         return Line(code, named, ", ".join(map(str, value)))
-    return Line(code, named, str(value) if isinstance(value, bool) else value, suffix_of(code), kind)
+    if isinstance(value, bool):
+        return Line(code, named, JUDGED[value] if code == "requirements.over_tolerance" else str(value), kind=kind)
+    return Line(code, named, value, suffix_of(code), kind)
 
 
 # --- Motion -----------------------------------------------------------------------------------------------------------

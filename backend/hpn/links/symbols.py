@@ -16,7 +16,7 @@ from hpn.physics.motion.mechanisms import CLASSES, Rotary
 from hpn.tables.inputs import Input, Inputs
 from hpn.tables.numbers import Kind
 from hpn.words.quantities import CANDIDATE
-from hpn.words.terms import BEARING_MODELS, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
+from hpn.words.terms import BEARING_MODELS, JUDGED, LIFE_BASES, POSITION_ERROR_AT, RANKINGS
 from hpn.words.wording import N_
 
 
@@ -153,7 +153,7 @@ SYMBOLS = (
         "ot",
         ("requirements", "over_tolerance"),
         "flag",
-        choices={"": N_("by the values as given"), "1": N_("by the worst case")},
+        choices={"1" if worst else "": text for worst, text in JUDGED.items()},
     ),
     Symbol(
         "eta",

@@ -68,6 +68,10 @@ class Ranking:
     first_of: str
 
 
+JUDGED: Mapping[bool, str] = {False: N_("by the values as given"), True: N_("by the worst case")}
+"""How gears are judged, by `over_tolerance`."""
+
+
 RANKINGS: Mapping[str, Ranking] = {
     "weight": Ranking(
         N_("weight"),
