@@ -23,7 +23,7 @@ WIDER = """() => [...document.querySelectorAll('body *')].filter((each) => {
     && (scrolls(overflowX, each.scrollWidth, each.clientWidth)
       || (scrolls(overflowY, each.scrollHeight, each.clientHeight) && !each.matches('#application')));
 }).map((each) => `${each.localName}.${each.className}#${each.id}`)"""
-"""What scrolls by itself, beside the input’s own column, the tabs, the map on a phone and a text that is typed."""
+"""Elements that scroll by themselves, beside the input’s own column, the tabs, the map on a phone and a typed text."""
 
 
 def _section(name: str) -> Callable[[Page], None]:

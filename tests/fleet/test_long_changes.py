@@ -15,7 +15,7 @@ from hpn.catalogue import Catalogue
 from hpn.documents.answers import AxisQuestion, answers
 from hpn.documents.merge import resolve
 from hpn.web import long_work
-from hpn.web.long_work import EVENTS, GivenUpError, Progress, answers_in_steps
+from hpn.web.long_work import EVENTS, GivenUpError, WorkProgress, answers_in_steps
 from tests.fleet.test_common_tolerances import form
 from tests.fleet.test_machine_changes import kept, past_of, send
 from tests.fleet.test_machine_page import BELT, text_of
@@ -37,7 +37,7 @@ def machine(client: TestClient) -> str:
 
 
 def events(client: TestClient, machine: str, *pairs: tuple[str, str]) -> list[Any]:
-    """What the answer to the form says, one after the other."""
+    """Events of the answer to the form, in their order."""
     headers = {"Content-Type": "application/x-www-form-urlencoded", "Accept": f"{EVENTS}, text/html"}
     answer = client.post(f"{machine}/change", content=urlencode(pairs), headers=headers)
     assert answer.status_code == 200 and answer.headers["content-type"].startswith(EVENTS)
@@ -73,7 +73,7 @@ def test_answers_in_steps_are_those_of_all_together(catalogue: Catalogue) -> Non
 
 
 def test_work_that_is_given_up_ends_at_its_next_step(catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch) -> None:
-    progress, asked = Progress(), list[int]()
+    progress, asked = WorkProgress(), list[int]()
 
     def questions() -> Iterator[AxisQuestion]:
         for k in range(100):

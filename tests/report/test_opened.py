@@ -13,7 +13,7 @@ import pytest
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.files.aas.courses import LINEAR, ROTATIVE
-from hpn.files.aas.opened import MOST_BYTES, Opened, is_shell, opened
+from hpn.files.aas.opened import MOST_BYTES, OpenedSizing, is_shell, opened
 from hpn.files.aas.sizing_ids import SIZING
 from hpn.files.aas.submodel import package
 from tests.build import Json, cycle, phase, worked_example
@@ -39,7 +39,7 @@ def without_application(content: bytes) -> bytes:
     return rezipped(content, lambda name, part: None if name == "aasx/application.json" else part)
 
 
-def application_of(found: Opened) -> Application:
+def application_of(found: OpenedSizing) -> Application:
     """The application of what was opened."""
     assert found.problem is None, found.problem
     return Application.model_validate_json(found.text)
@@ -256,8 +256,8 @@ def test_a_cut_or_broken_package_is_refused_or_read_and_never_an_error(catalogue
     for place in range(0, len(content), len(content) // 150):
         broken = bytearray(content)
         broken[place] ^= 0x55
-        assert isinstance(opened(bytes(broken)), Opened)
-        assert isinstance(opened(content[:place]), Opened)
+        assert isinstance(opened(bytes(broken)), OpenedSizing)
+        assert isinstance(opened(content[:place]), OpenedSizing)
 
 
 def test_a_course_of_very_many_samples_is_refused(catalogue: Catalogue) -> None:

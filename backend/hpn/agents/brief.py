@@ -52,7 +52,7 @@ def brief(account: Account, service: str, *, explained: bool) -> dict[str, Any]:
 
 
 def _sentences(account: Account, explained: bool) -> dict[str, Any]:
-    """What a gear lacks, what would let it fit, and how it stands over the tolerances, as far as there is something."""
+    """Figures that a gear lacks, its remedy, and its place over the tolerances, as far as there are any."""
     candidate = account.candidate
     said: dict[str, Sentence | None] = {"over_tolerance": tolerance_of(candidate)}
     if explained and account.application is not None and account.catalogue is not None:

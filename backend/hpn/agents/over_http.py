@@ -11,15 +11,15 @@ from hpn.agents.server import Call, server_of
 Message = MutableMapping[str, Any]
 
 
-class Sent(NamedTuple):
-    """What the protocol's library has to send."""
+class TransportReply(NamedTuple):
+    """Reply of the protocol's library."""
 
     status: int
     headers: dict[str, str]
     content: bytes
 
 
-async def exchange(call: Call, scope: Message, body: bytes) -> Sent:
+async def exchange(call: Call, scope: Message, body: bytes) -> TransportReply:
     """Answer to a request by the library's own transport, which lives as long as the request."""
     manager = StreamableHTTPSessionManager(
         server_of(call), json_response=True, stateless=True, max_request_body_size=max(len(body), 1)
@@ -38,4 +38,4 @@ async def exchange(call: Call, scope: Message, body: bytes) -> Sent:
         await manager.handle_request(scope, receive, send)
     start, *rest = messages
     headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in start.get("headers", ())}
-    return Sent(start["status"], headers, b"".join(message.get("body", b"") for message in rest))
+    return TransportReply(start["status"], headers, b"".join(message.get("body", b"") for message in rest))

@@ -9,13 +9,13 @@ from mcp.server.lowlevel import Server
 
 from hpn import ENGINE_VERSION
 from hpn.agents.schema import INSTRUCTIONS, TOOLS
-from hpn.agents.tools import Answer
+from hpn.agents.tools import ToolReply
 
 ONLY_READS = types.ToolAnnotations(
     read_only_hint=True, destructive_hint=False, idempotent_hint=True, open_world_hint=False
 )
 
-Call = Callable[[str, Mapping[str, Any]], Awaitable[Answer]]
+Call = Callable[[str, Mapping[str, Any]], Awaitable[ToolReply]]
 """Answer of a tool by its name and arguments, wherever it is computed."""
 
 

@@ -26,14 +26,14 @@ MOST_REPEATED = 160
 ASK = "Nothing was calculated. Ask the user for what is lacking or wrong here, and make nothing up:"
 
 
-class Answer(NamedTuple):
+class ToolReply(NamedTuple):
     """Text of an answer; a refusal says what is to be asked for."""
 
     text: str
     is_refusal: bool = False
 
     @classmethod
-    def refusal(cls, text: str) -> "Answer":
+    def refusal(cls, text: str) -> "ToolReply":
         """A refusal, which may repeat what no text can hold."""
         return cls(text.encode(errors="replace").decode(), True)
 
@@ -42,19 +42,19 @@ class _RefusedError(ValueError):
     """Arguments that a tool can't use, with the reason."""
 
 
-def answer(tool: str, arguments: Mapping[str, Any], catalogue: Catalogue, service: str) -> Answer:
+def answer(tool: str, arguments: Mapping[str, Any], catalogue: Catalogue, service: str) -> ToolReply:
     """Answer of a tool; `service` is the address that links lead to, without a slash at its end."""
     try:
         _require_known(tool, arguments)
         if tool == "catalogue":
-            return Answer(within(_catalogue(arguments.get("designation"), catalogue, service)))
+            return ToolReply(within(_catalogue(arguments.get("designation"), catalogue, service)))
         application = Application.model_validate(arguments.get("application"))
         designation = arguments.get("designation") if tool == "explain" else None
-        return Answer(within(_judged(application, designation, catalogue, service)))
+        return ToolReply(within(_judged(application, designation, catalogue, service)))
     except _RefusedError as error:
-        return Answer.refusal(str(error))
+        return ToolReply.refusal(str(error))
     except (ValidationError, InputError) as error:
-        return Answer.refusal(_told(error))
+        return ToolReply.refusal(_told(error))
 
 
 def _require_known(tool: str, arguments: Mapping[str, Any]) -> None:

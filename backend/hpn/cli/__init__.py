@@ -83,7 +83,7 @@ def _discard_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-class _Parser(argparse.ArgumentParser):
+class _CommandParser(argparse.ArgumentParser):
     """Parser of `hpn`, whose help ends with exit codes and settings; those are loaded when they are asked for."""
 
     def format_help(self) -> str:
@@ -92,7 +92,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser("hpn", description="Select a Harmonic Drive HPN planetary gear.")
+    parser = _CommandParser("hpn", description="Select a Harmonic Drive HPN planetary gear.")
     parser.add_argument(
         "--version",
         action="store_const",

@@ -9,7 +9,7 @@ from anyio.to_thread import run_sync
 from mcp.server.stdio import stdio_server
 
 from hpn.agents.server import server_of
-from hpn.agents.tools import Answer, answer
+from hpn.agents.tools import ToolReply, answer
 from hpn.catalogue import load_catalogue
 from hpn.web.settings import Settings
 
@@ -20,7 +20,7 @@ def run(options: argparse.Namespace) -> int:
     catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
     service = (options.service or f"http://{settings.host}:{settings.port}").rstrip("/")
 
-    async def call(tool: str, arguments: Mapping[str, Any]) -> Answer:
+    async def call(tool: str, arguments: Mapping[str, Any]) -> ToolReply:
         return await run_sync(answer, tool, arguments, catalogue, service)
 
     anyio.run(_serve, server_of(call))

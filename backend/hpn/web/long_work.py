@@ -36,7 +36,7 @@ class GivenUpError(Exception):
     """Nobody waits for the work any more."""
 
 
-class Progress:
+class WorkProgress:
     """Count of the axes that are answered, of how many."""
 
     def __init__(self) -> None:
@@ -54,13 +54,13 @@ class Progress:
         self.done, self.of, self.is_saving = done, of, is_saving
 
 
-_PROGRESS: ContextVar[Progress | None] = ContextVar("progress", default=None)
+_PROGRESS: ContextVar[WorkProgress | None] = ContextVar("progress", default=None)
 
 
 @contextmanager
 def given_up_at_end() -> Iterator[None]:
     """Have what a request has begun end with it, at the next step."""
-    progress = Progress()
+    progress = WorkProgress()
     token = _PROGRESS.set(progress)
     try:
         yield
@@ -89,7 +89,7 @@ class CountedAnswer(StreamingResponse):
     """Events that count the axes of a change, the last of which has its page; the work ends when the client leaves."""
 
     def __init__(self, request: Request, work: Callable[[], Awaitable[Response]]) -> None:
-        self._request, self._work, self._progress = request, work, Progress()
+        self._request, self._work, self._progress = request, work, WorkProgress()
         headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
         super().__init__(self._pieces(), media_type=EVENTS, headers=headers)
 
@@ -124,7 +124,7 @@ def _event(said: dict[str, object]) -> bytes:
     return b"data: " + msgspec.json.encode(said) + b"\n\n"
 
 
-def _told(progress: Progress, reader: Reader) -> dict[str, object]:
+def _told(progress: WorkProgress, reader: Reader) -> dict[str, object]:
     values = {"done": reader.exact(progress.done), "all": reader.exact(progress.of)}
     text = reader.told(Sentence(SAVING) if progress.is_saving else Sentence(COUNTED, values))
     return {"done": progress.done, "of": progress.of, "saving": progress.is_saving, "told": text}

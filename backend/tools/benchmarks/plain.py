@@ -128,7 +128,7 @@ class Cycle:
         self.T_rms = float(np.sqrt((T * T * t).sum() / time))
 
 
-class Gears:
+class PlainGears:
     """The catalogue as columns; what is not published is NaN."""
 
     def __init__(self, rows: list[dict[str, Any]], rated_speed_rpm: float) -> None:
@@ -144,7 +144,7 @@ class Gears:
     def _column(self, name: str) -> FloatArray:
         return np.array([math.nan if row[name] is None else row[name] for row in self.rows], dtype=float)
 
-    def allowed(self, application: Application) -> "Gears":
+    def allowed(self, application: Application) -> "PlainGears":
         """Those that the application restricts the list to."""
         ratios, sizes = application.requirements.ratios, application.requirements.sizes
         rows = [
@@ -152,7 +152,7 @@ class Gears:
             for row in self.rows
             if (ratios is None or row["ratio"] in ratios) and (sizes is None or row["size"] in sizes)
         ]
-        return self if len(rows) == len(self.rows) else Gears(rows, self.rated_speed_rpm)
+        return self if len(rows) == len(self.rows) else PlainGears(rows, self.rated_speed_rpm)
 
 
 class Selector:
@@ -160,7 +160,7 @@ class Selector:
 
     def __init__(self, folder: Path) -> None:
         catalogue = json.loads((folder / "catalogue.json").read_text())
-        self.gears = Gears(catalogue["gears"], catalogue["series"]["rated_input_speed"]["value"])
+        self.gears = PlainGears(catalogue["gears"], catalogue["series"]["rated_input_speed"]["value"])
         sample = json.loads((folder / "reply.json").read_text())
         self.versions = {name: sample[name] for name in ("engine_version", "catalogue_version")}
         self.definitions = {code: Definition(**entry) for code, entry in sample["check_definitions"].items()}
@@ -186,7 +186,7 @@ class Selector:
             notices=self.notices,
         )
 
-    def _candidates(self, application: Application, cycle: Cycle, gears: Gears) -> list[PlainCandidate]:
+    def _candidates(self, application: Application, cycle: Cycle, gears: PlainGears) -> list[PlainCandidate]:
         stop = application.emergency_stop
         T_k = math.nan if stop is None or stop.torque_Nm is None else abs(stop.torque_Nm)
         demands = {
@@ -215,7 +215,7 @@ class Selector:
         return [found[g] for g in places]
 
     @staticmethod
-    def _figures(cycle: Cycle, gears: Gears, T_k: float) -> dict[str, FloatArray]:
+    def _figures(cycle: Cycle, gears: PlainGears, T_k: float) -> dict[str, FloatArray]:
         n_in_av = gears.ratio * cycle.n_av
         peaks = np.floor(10 ** (8.5 - 1.5 * T_k / gears.T_R) * ROUNDING)
         return {
@@ -285,7 +285,7 @@ def numbers(values: FloatArray) -> list[float | None]:
     return [value if math.isfinite(value) else None for value in values.tolist()]
 
 
-def _order(candidate: PlainCandidate, gears: Gears, g: int) -> tuple[float, ...]:
+def _order(candidate: PlainCandidate, gears: PlainGears, g: int) -> tuple[float, ...]:
     """Suitable gears by weight, then unsuitable ones by utilisation, then unrated ones in catalogue order."""
     used, ratio = candidate.utilisation or 0.0, float(candidate.ratio)
     life = candidate.life_L10_h if candidate.life_L10_h is not None else -math.inf

@@ -26,7 +26,7 @@ LOADS = ("LoadTorque", "RadialForce", "AxialForce")
 """Columns of a course, and of what acts on it."""
 
 
-class Section(NamedTuple):
+class MotionSection(NamedTuple):
     """A section: `kind` and `metadata` are the template's short ids, and `rows` has a row for each instant."""
 
     kind: str
@@ -41,7 +41,7 @@ class Section(NamedTuple):
         return "\r\n".join([*lines, ""]).encode()
 
 
-def sections_of(cycle: DutyCycle) -> Iterator[Section]:
+def sections_of(cycle: DutyCycle) -> Iterator[MotionSection]:
     """Sections of a duty cycle in their order, its pause as the last one."""
     if cycle.motion is not None:
         yield from _of_motion(cycle.motion)
@@ -52,16 +52,16 @@ def sections_of(cycle: DutyCycle) -> Iterator[Section]:
         yield _linear({}, rows) if isinstance(cycle.motion, LinearMotion) else _rotative({}, ROTATIVE, rows)
 
 
-def _rotative(constants: Mapping[str, float], columns: Sequence[str], rows: FloatArray) -> Section:
-    return Section("RotativeSection", "MetadataRotativeMotionFile", constants, columns, rows)
+def _rotative(constants: Mapping[str, float], columns: Sequence[str], rows: FloatArray) -> MotionSection:
+    return MotionSection("RotativeSection", "MetadataRotativeMotionFile", constants, columns, rows)
 
 
-def _linear(constants: Mapping[str, float], rows: FloatArray) -> Section:
-    return Section("LinearSection", "MetadataLinearMotionFile", constants, LINEAR, rows)
+def _linear(constants: Mapping[str, float], rows: FloatArray) -> MotionSection:
+    return MotionSection("LinearSection", "MetadataLinearMotionFile", constants, LINEAR, rows)
 
 
-def _of_phases(cycle: DutyCycle) -> Iterator[Section]:
-    """What acts is the negative of what the gear gives."""
+def _of_phases(cycle: DutyCycle) -> Iterator[MotionSection]:
+    """Sections of typed phases; their torques and loads act from outside, so they are the negative of the gear’s."""
     phases = cycle.load_phases
     steps = [
         (
@@ -92,7 +92,7 @@ def _acting(torque_Nm: float, radial_N: float | None, axial_N: float | None) -> 
     return dict(zip(LOADS, (-torque_Nm, radial_N, axial_N), strict=True))
 
 
-def _of_motion(motion: RotaryMotion | LinearMotion) -> Iterator[Section]:
+def _of_motion(motion: RotaryMotion | LinearMotion) -> Iterator[MotionSection]:
     load, course = motion.mechanism.load, motion.course
     trace = trace_of(course)
     moves = course.move[trace.phase]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hpn.files.aas.courses import LINEAR, ROTATIVE, Section
+from hpn.files.aas.courses import LINEAR, ROTATIVE, MotionSection
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion.mechanisms import RPM, BallScrew, ShaftLoad
 from hpn.tables.sheets import RefusedError
@@ -24,7 +24,7 @@ ALIKE = 1e-9
 """Relative difference below which two accelerations, or two loads, are one."""
 
 
-def cycle_of(sections: Sequence[Section], mechanism: Mapping[str, float]) -> dict[str, Any]:
+def cycle_of(sections: Sequence[MotionSection], mechanism: Mapping[str, float]) -> dict[str, Any]:
     """Phases at the gear's output, and the pause: what rests at the end without a load."""
     found = [phase for section in sections for phase in _phases(section, mechanism)]
     if len(found) > MAXIMUM_PHASES:
@@ -35,7 +35,7 @@ def cycle_of(sections: Sequence[Section], mechanism: Mapping[str, float]) -> dic
     return {"phases": found, "pause_s": pause}
 
 
-def _phases(section: Section, mechanism: Mapping[str, float]) -> Iterator[dict[str, float]]:
+def _phases(section: MotionSection, mechanism: Mapping[str, float]) -> Iterator[dict[str, float]]:
     columns = dict(zip(section.columns, section.rows.T, strict=True))
     time = columns["Time"]
     if (np.diff(time) < 0).any():
@@ -65,7 +65,7 @@ def _is_column(columns: Mapping[str, FloatArray], is_linear: bool) -> bool:
     return ("FrictionForce" if is_linear else "FrictionTorque") in columns
 
 
-def _value(section: Section, columns: Mapping[str, FloatArray], name: str) -> FloatArray:
+def _value(section: MotionSection, columns: Mapping[str, FloatArray], name: str) -> FloatArray:
     """A quantity over time: its column, else what holds for the whole section, else 0."""
     return columns[name] if name in columns else np.full(len(section.rows), section.constants.get(name, 0.0))
 
@@ -117,7 +117,7 @@ def _phase(
         yield phase | {name: float(values[part.start]) for name, values in acting.items()}
 
 
-def _rotary_load(section: Section, mechanism: Mapping[str, float]) -> ShaftLoad:
+def _rotary_load(section: MotionSection, mechanism: Mapping[str, float]) -> ShaftLoad:
     return ShaftLoad(
         inertia_kgm2=section.constants.get("MomentOfInertiaOfLoad", 0.0) + mechanism.get("InertiaMotorSide", 0.0),
         friction_Nm=section.constants.get("FrictionTorque", 0.0) + mechanism.get("NoLoadTorque", 0.0),
@@ -136,7 +136,7 @@ def _efficiency(mechanism: Mapping[str, float]) -> float:
     return value if 0 < value <= 1 else value / 100 if 1 < value <= 100 else 1.0
 
 
-def _linear_load(section: Section, mechanism: Mapping[str, float]) -> ShaftLoad:
+def _linear_load(section: MotionSection, mechanism: Mapping[str, float]) -> ShaftLoad:
     """Load of a mass along a line, by the mechanisms of the product: way per turn is all that tells them apart."""
     feed = mechanism.get("FeedConstant") or math.pi * mechanism.get("DiameterPinion", 0.0)
     mass = section.constants.get("LoadMass", 0.0)

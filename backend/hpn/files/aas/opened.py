@@ -21,7 +21,7 @@ from pydantic import ValidationError
 
 from hpn.application import Application
 from hpn.application.faults import pointer, sentences_of
-from hpn.files.aas.courses import LINEAR, LOADS, ROTATIVE, Section, sections_of
+from hpn.files.aas.courses import LINEAR, LOADS, ROTATIVE, MotionSection, sections_of
 from hpn.files.aas.derived import cycle_of
 from hpn.files.aas.sizing_ids import SIZING, meaning
 from hpn.files.aas.tree import UNREADABLE, Element, submodels_of
@@ -40,7 +40,7 @@ NO_UNIT = N_("{section}: {column} is in {unit}, and has to be in SI units")
 
 
 @dataclass(frozen=True, slots=True)
-class Opened:
+class OpenedSizing:
     """JSON of an application, and the elements of which nothing was taken; or the problem why there is none."""
 
     text: str = ""
@@ -55,19 +55,19 @@ def is_shell(content: bytes) -> bool:
     return content.lstrip()[:1] == b"{" and all(mark in content for mark in IN_JSON)
 
 
-def opened(content: bytes) -> Opened:
-    """What a package or JSON comes to; raises nothing but MemoryError."""
+def opened(content: bytes) -> OpenedSizing:
+    """Application of a package or JSON, or the problem with it; raises nothing but MemoryError."""
     try:
         return _Sizing(content).opened()
     except RefusedError as refused:
-        return Opened(problem=refused.sentence)
+        return OpenedSizing(problem=refused.sentence)
     except ValidationError as error:
         at, sentence, _ = sentences_of(error)[0]
-        return Opened(problem=Sentence(N_("{field}: {message}"), {"field": pointer(at), "message": sentence}))
+        return OpenedSizing(problem=Sentence(N_("{field}: {message}"), {"field": pointer(at), "message": sentence}))
     except MemoryError:
         raise
     except Exception:  # whatever the libraries meet in a broken file
-        return Opened(problem=Sentence(UNREADABLE))
+        return OpenedSizing(problem=Sentence(UNREADABLE))
 
 
 @dataclass(slots=True)
@@ -78,7 +78,7 @@ class _Sizing:
     parts: Mapping[str, bytes] = field(default_factory=dict)
     taken: set[int] = field(default_factory=set)
 
-    def opened(self) -> Opened:
+    def opened(self) -> OpenedSizing:
         self.parts = _unpacked(self.content) if self.content.startswith(MAGIC) else {"": self.content}
         sizing = next(self._sizings(), None)
         if sizing is None:
@@ -90,7 +90,7 @@ class _Sizing:
                 raise RefusedError(NO_MOTION)
             application = Application.model_validate(self._derived(sizing, sections))
         text = application.model_dump_json(exclude_none=True)
-        return Opened(text, tuple(_unused(sizing, self.taken)))
+        return OpenedSizing(text, tuple(_unused(sizing, self.taken)))
 
     def _sizings(self) -> Iterator[Element]:
         for name, part in self.parts.items():
@@ -112,7 +112,7 @@ class _Sizing:
 
     # --- Motion -------------------------------------------------------------------------------------------------------
 
-    def _sections(self, sizing: Element) -> Iterator[Section]:
+    def _sections(self, sizing: Element) -> Iterator[MotionSection]:
         pattern = self._take(sizing, "ApplicationRequirements", "MotionPattern", "MotionPatternSections")
         for part in pattern.parts if pattern else ():
             for kind, metadata, columns in (
@@ -122,7 +122,7 @@ class _Sizing:
                 if meaning(kind) in part.meanings:
                     yield self._section(part, kind, metadata, columns)
 
-    def _section(self, part: Element, kind: str, metadata: str, columns: Sequence[str]) -> Section:
+    def _section(self, part: Element, kind: str, metadata: str, columns: Sequence[str]) -> MotionSection:
         wanted = [*columns, *ACTING]
         file, described = self._take(part, "MotionSectionFile"), self._take(part, metadata)
         known = _columns_of(described, part.name) if described else {}
@@ -132,9 +132,9 @@ class _Sizing:
             raise RefusedError(NO_COURSE, section=part.name, columns=", ".join(columns[:3]))
         names, rows = _course(content, part.name, [name for name in wanted if name in known] or list(columns))
         constants = {name: value for name in CONSTANTS if (value := self._number(part, name)) is not None}
-        return Section(kind, metadata, constants, names, rows)
+        return MotionSection(kind, metadata, constants, names, rows)
 
-    def _derived(self, sizing: Element, sections: Sequence[Section]) -> dict[str, Any]:
+    def _derived(self, sizing: Element, sections: Sequence[MotionSection]) -> dict[str, Any]:
         mechanism = next(iter(part.parts), None) if (part := self._take(sizing, "TransformationMechanism")) else None
         values = {}
         if mechanism is not None:
@@ -152,7 +152,7 @@ class _Sizing:
 
     # --- The application that the package carries ---------------------------------------------------------------------
 
-    def _carried(self, sizing: Element, sections: Sequence[Section]) -> Application | None:
+    def _carried(self, sizing: Element, sections: Sequence[MotionSection]) -> Application | None:
         """The application of `application.json` where its motion is that of the sections; None for any other."""
         information = next(sizing.of(meaning("SizingProjectInformation")), None)
         for link in information.of(meaning("SizingProjectLink")) if information else ():
@@ -173,18 +173,18 @@ CONSTANTS = (
     *("FrictionTorque", "AxialForce", "RadialForce", "MomentOfInertiaOfLoad", "LoadTorque"),
     *("FrictionCoefficient", "FrictionForce", "CompensationForce", "LoadMass", "LoadSideForce", "CounterMass"),
 )
-"""What holds for a whole section."""
+"""Elements that hold for a whole section."""
 OF_MECHANISM = (
     *("Efficiency", "InertiaMotorSide", "NoLoadTorque", "InclinationAngle", "FrictionCoefficient"),
     *("FeedConstant", "DiameterPinion"),
 )
-"""What is taken of a mechanism."""
+"""Elements that are read of a mechanism."""
 
 SAME = 1e-9
 """Relative difference below which two courses are the same: whoever hands them on may round."""
 
 
-def _is_same(one: Section, other: Section) -> bool:
+def _is_same(one: MotionSection, other: MotionSection) -> bool:
     if one.kind != other.kind or one.rows.shape != other.rows.shape or list(one.columns) != list(other.columns):
         return False
     names = {*one.constants, *other.constants}

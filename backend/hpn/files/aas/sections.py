@@ -6,7 +6,7 @@ from basyx.aas import model
 from basyx.aas.model.concept import ConceptDescription
 
 from hpn.files.aas.concepts import reference
-from hpn.files.aas.courses import Section
+from hpn.files.aas.courses import MotionSection
 from hpn.files.aas.elements import group
 from hpn.files.aas.sizing_ids import CONCEPTS, meaning
 
@@ -22,7 +22,7 @@ def number(name: str, value: float) -> model.Property:
     return model.Property(name, float, float(value), semantic_id=ref)
 
 
-def elements_of(sections: Iterable[tuple[Section, str]]) -> Iterator[model.SubmodelElementCollection]:
+def elements_of(sections: Iterable[tuple[MotionSection, str]]) -> Iterator[model.SubmodelElementCollection]:
     """Collections of sections, each with the place of its file in the package."""
     for place, (section, path) in enumerate(sections, 1):
         columns = [number(name, 1.0) for name in section.columns]

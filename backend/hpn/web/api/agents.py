@@ -10,7 +10,7 @@ from pydantic_core import from_json
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 
-from hpn.agents.tools import Answer, answer
+from hpn.agents.tools import ToolReply, answer
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import read_body, require_bounded, require_unique
 from hpn.web.door.hosts import require_known_origin
@@ -21,7 +21,7 @@ from hpn.web.door.visit import absolute
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 
 EXCHANGE = "hpn.agents.over_http:exchange"
-"""What needs the extra, by name."""
+"""Function that needs the extra, by its name."""
 
 LLMS = """# HPN Select
 
@@ -56,12 +56,12 @@ async def speak(request: Request) -> Response:
     exchange = await compute(request, "pages", resolve_name, EXCHANGE)  # takes a second, the first time
     mistakes: list[Exception] = []
 
-    async def call(tool: str, arguments: Mapping[str, Any]) -> Answer:
+    async def call(tool: str, arguments: Mapping[str, Any]) -> ToolReply:
         try:
             service, catalogue = absolute(request, ""), request.app.state.catalogue
             return await calculate(request, body, answer, tool, arguments, catalogue, service)
         except Problem as problem:  # too much is being computed
-            return Answer(problem.detail, True)
+            return ToolReply(problem.detail, True)
         except Exception as error:
             mistakes.append(error)
             raise
@@ -74,5 +74,5 @@ async def speak(request: Request) -> Response:
 
 @router.get("/llms.txt")
 async def llms(request: Request) -> Response:
-    """What the service is and where an agent finds it."""
+    """The service in brief for agents, with its addresses."""
     return PlainTextResponse(LLMS.format(service=absolute(request, "")))

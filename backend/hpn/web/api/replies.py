@@ -166,7 +166,7 @@ class EnvelopeReply(Reply, frozen=True):
 
 
 class SizingReply(Reply, frozen=True):
-    """What a sizing of another tool comes to."""
+    """Application of another tool’s sizing."""
 
     application: Annotated[Any, Field(description="The application, as POST /api/v1/select takes it.")]
     unused: Annotated[tuple[str, ...], Field(description="Paths of the elements of which nothing was taken.")]

@@ -47,7 +47,7 @@ PARTS = FIGURES.union(SECTIONS[1:])
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(Result):
+class LiveResult(Result):
     """The result of the live page, with the gears beside the chosen one.
 
     `link` is the application alone, `address` all that the form says; on the page of an axis, `axis`, these are of its
@@ -162,7 +162,7 @@ def read_query(query: bytes) -> Form:
     return link_reader.parse(pairs_of(text))
 
 
-def answered(form: Form, catalogue: Catalogue, axis: AxisView | None = None) -> tuple[Form, Answer | None]:
+def answered(form: Form, catalogue: Catalogue, axis: AxisView | None = None) -> tuple[Form, LiveResult | None]:
     """Answer to a form; a form that can't be answered comes back with its problems."""
     if form.gear and catalogue.find(form.gear) is None:
         unknown = Sentence(N_("{gear} is not a gear of the catalogue"), {"gear": form.gear[:40]})
@@ -177,7 +177,7 @@ def answered(form: Form, catalogue: Catalogue, axis: AxisView | None = None) -> 
         return replace(form, application=None, problems=tuple(refused)), None
 
 
-def _answer(application: Application, form: Form, catalogue: Catalogue, axis: AxisView | None) -> Answer:
+def _answer(application: Application, form: Form, catalogue: Catalogue, axis: AxisView | None) -> LiveResult:
     link_of = axis.link if axis else to_link
     link = link_of(application)
     judged = judge(application, catalogue)
@@ -189,7 +189,7 @@ def _answer(application: Application, form: Form, catalogue: Catalogue, axis: Ax
     labels = query_of({**form.labels, **order.labels})
     tail = tail_of(form.pins) + labels
     chosen = f"&gear={gear.designation}" if form.gear else ""
-    return Answer(
+    return LiveResult(
         selection=selection,
         application=application,
         chosen=everything[gear.designation],
@@ -257,7 +257,7 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
     return response
 
 
-def _address(answer: Answer | None, form: Form, axis: AxisView | None) -> str | None:
+def _address(answer: LiveResult | None, form: Form, axis: AxisView | None) -> str | None:
     """Address for the address bar; None where there is something to correct."""
     if answer is None and axis and form.empty:
         return axis.address(axis.open_link, tail_of(form.pins))

@@ -53,7 +53,7 @@ NO_INERTIA = N_("Inertia ratio and resonance need a motion, or the inertia of th
 
 @dataclass(frozen=True)
 class Asked:
-    """What the address says: the application's parameters, the page's own, and who the application belongs to."""
+    """Contents of the address: the application's parameters, the page's own, and who the application belongs to."""
 
     place: str
     back: str
@@ -185,7 +185,7 @@ def _page(
 
 
 def _problems_of(asked: Asked, least: float | Sentence | None) -> list[Sentence]:
-    """What is wrong with an application and the bounds of its pairs; none of a page that is opened without one."""
+    """Problems of an application and the bounds of its pairs; none on a page that is opened without one."""
     problems = [one for one in (least, asked.ratio) if isinstance(one, Sentence)]
     problems += [problem.message for problem in asked.form.problems if asked.carried]
     application = asked.application

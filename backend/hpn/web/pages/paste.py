@@ -18,7 +18,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import pointer, sentence_of
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
-from hpn.files.aas.opened import Opened, is_shell, opened
+from hpn.files.aas.opened import OpenedSizing, is_shell, opened
 from hpn.links.row_symbols import PHASE_BY_NAME
 from hpn.links.rows import TEXT, TOLERANCE, filled, used_columns
 from hpn.links.symbols import BY_NAME
@@ -148,7 +148,7 @@ def _of_application(request: Request, link: str, text: str, take: str) -> Respon
     return _render(request, draft, 422 if draft.problems else 200)
 
 
-def _of_sizing(request: Request, given: PastePost, found: Opened) -> Response:
+def _of_sizing(request: Request, given: PastePost, found: OpenedSizing) -> Response:
     """Preview of what another tool has sized; taking it follows, once it was seen what is not used."""
     if found.problem:
         return _render(request, PasteDraft(given.link, problems=(found.problem,)), 422)

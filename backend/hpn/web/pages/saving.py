@@ -25,7 +25,7 @@ from hpn.web.form.form import Form
 from hpn.web.form.given import Pairs
 from hpn.web.form.linked import query_part
 from hpn.web.pages import calculator
-from hpn.web.pages.calculator import Answer
+from hpn.web.pages.calculator import LiveResult
 from hpn.web.pages.rendering import reason
 from hpn.words.wording import N_
 
@@ -102,7 +102,7 @@ def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:
     return draft_of(catalogue, answer.application, labels, posted.key, owner)
 
 
-def _code(form: Form, answer: Answer) -> str | None:
+def _code(form: Form, answer: LiveResult) -> str | None:
     """Ordering code as the page shows it; none of a gear that does not suit and that nobody has chosen."""
     if answer.order.problem:
         raise Problem(422, answer.order.problem, [(("order_motor",), answer.order.problem)])
