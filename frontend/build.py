@@ -1,11 +1,10 @@
-"""Write the page's assets to frontend/dist under content-hashed names, each text file with its compressed forms, and
-the fonts of the PDF to frontend/dist/paper.
+"""Write the page's assets to frontend/dist under content-hashed names, text files compressed with brotli alone, and the
+fonts of the PDF to frontend/dist/paper.
 
 A name changes exactly when its content does, so the service may let browsers keep every file for ever.
 `manifest.json` maps the logical name a template asks for ("page.css") to the hashed one ("page.3f2a9c1b.css").
 """
 
-import gzip
 import hashlib
 import json
 import re
@@ -30,7 +29,7 @@ DRAWN = ("../../backend/hpn/explain/drawings/drawings", "plots")
 COMMON = ("fonts", "tokens", "app", "form", "tools", "import", "commands")
 RESULT = ("insight", "tabs", *DRAWN)
 STYLES = {
-    "page.css": (*COMMON, "workbench", *RESULT, "verdict", "sheet", "phone", "print"),
+    "page.css": (*COMMON, "workbench", *RESULT, "scale", "verdict", "sheet", "phone", "print"),
     "site.css": (
         *COMMON,
         "catalogue",
@@ -41,15 +40,17 @@ STYLES = {
         "machine-axes",
         "machine",
         "revisions",
+        "chain",
+        "scale",
         "verdict",
         "phone",
         "print",
         "paper",
     ),
-    **{f"{part}.css": (part,) for part in ("motion", "reading", "pairs")},
-    "axis.css": ("trail", "axis"),
-    "saved.css": ("selection", "trail", "revisions", "read-only", "paper"),
-    "report.css": ("tokens", "app", "tools", "machine-axes", "phone", "print"),
+    **{f"{part}.css": (part,) for part in ("motion", "reading", "pairs", "tolerance")},
+    "axis.css": ("trail", "chain", "axis"),
+    "saved.css": ("selection", "trail", "revisions", "chain", "read-only", "paper"),
+    "report.css": ("tokens", "app", "tools", "machine-axes", "scale", "phone", "print"),
 }
 """Style sheets of the form with its result, of all other pages, of parts that come later and bring their own, and of a
 fleet’s report, which holds its own."""
@@ -118,15 +119,19 @@ def hashed_name(name: str, content: bytes) -> str:
 
 
 def write(target: Path, content: bytes) -> None:
+    """Write a file; of a text the compressed form, which the service unpacks for who takes no brotli."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_bytes(content)
     if target.suffix in TEXT_SUFFIXES:
         target.with_name(target.name + ".br").write_bytes(brotli.compress(content))
-        target.with_name(target.name + ".gz").write_bytes(gzip.compress(content, mtime=0))
+    else:
+        target.write_bytes(content)
 
 
 def copy_fonts() -> None:
-    """Write the faces of the PDF and the regular weight of each Noto font, each with the licence that goes along."""
+    """Write the faces of the PDF and the regular weight of each Noto font, each with the licence that goes along.
+
+    The Korean one is without what the Chinese one has, which is asked before it: half of it.
+    """
     (DIST / "paper").mkdir(parents=True)
     for name, content in fonts.paper_faces(TYPEFACE).items():
         (DIST / "paper" / name).write_bytes(content)
@@ -134,6 +139,8 @@ def copy_fonts() -> None:
         name = font.name.replace("_400Regular", "")
         shutil.copyfile(font, DIST / "paper" / name)
         shutil.copyfile(font.parents[1] / "LICENSE_FONT", DIST / "paper" / f"{name}.OFL.txt")
+    chinese, korean = (DIST / "paper" / f"NotoSans{name}.ttf" for name in ("SC", "KR"))
+    korean.write_bytes(fonts.saved(fonts.beyond(korean, chinese)))
 
 
 def main() -> None:

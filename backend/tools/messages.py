@@ -1,6 +1,6 @@
-"""Every text that a reader may see, found where it stands in code, templates and catalogue.
+"""Texts that users may see, collected from code, templates and catalogue.
 
-`python -m tools.messages` brings the catalogues of translations up to date and says what is left to translate.
+`python -m tools.messages` updates the catalogues of translations and lists the texts left to translate.
 """
 
 import ast
@@ -26,7 +26,7 @@ MARKS = {
     "RefusedError": (0,),
     "PydanticCustomError": (1,),
 }
-"""Calls that mark a text, and which of their arguments are texts."""
+"""Calls that mark a text, and the places of their arguments that are texts."""
 
 COLUMNS = {
     "sizes.csv": ("note",),
@@ -41,7 +41,7 @@ Found = tuple[Text, str]
 
 
 def texts() -> Catalog:
-    """Every marked text with the files that it stands in."""
+    """Marked texts, each with the files that contain it."""
     template = Catalog()
     places: dict[Text, set[str]] = {}
     for text, place in (*_of_code(), *_of_templates(), *_of_figures()):
@@ -88,7 +88,7 @@ def _name(path: Path) -> str:
 
 
 def missing(code: str) -> list[str]:
-    """Texts that a language lacks, that are only guessed, or that nobody shows any more."""
+    """Texts that a language lacks, that are only guessed, or that nothing shows any more."""
     own, wanted = catalogue(code), texts()
     problems = []
     for message in wanted:
@@ -104,7 +104,7 @@ def _complete(string: object) -> bool:
 
 
 def update(code: str) -> list[str]:
-    """Bring a language's catalogue up to date; what is left to do in it."""
+    """Update a language's catalogue; returns the texts left to translate in it."""
     own = catalogue(code)
     own.update(texts(), no_fuzzy_matching=True, update_creation_date=False)
     own.obsolete.clear()

@@ -1,4 +1,4 @@
-"""`make screenshots`: the main states of the page as pictures for the docs, from the real service in real Chromium."""
+"""`make screenshots`: pictures of the page's main states for the docs, from the real service in real Chromium."""
 
 import shutil
 import tempfile
@@ -18,7 +18,7 @@ LOADED = EXAMPLE + "&FR=500&FA=200&fw=1.2"
 
 @dataclass(frozen=True)
 class Screen:
-    """One state of the page, and how it is looked at."""
+    """State of the page, and the browser that shows it."""
 
     name: str
     path: str
@@ -37,7 +37,7 @@ STATES = (
 
 
 def main() -> None:
-    """Take every picture anew."""
+    """Take all pictures anew."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
     with (

@@ -15,9 +15,9 @@ const ours = (event) => ofForm(event) || event.detail.ctx?.sourceElement?.id ===
 const retry = () => formOf()?.requestSubmit();
 
 function show(state, detail = "") {
-  for (const said of document.querySelectorAll("#connection [data-state]")) {
-    const stays = state && said.dataset.state === "unreached"; // until there is an answer, however often it is tried
-    if (!stays) said.hidden = said.dataset.state !== state;
+  for (const line of document.querySelectorAll("#connection [data-state]")) {
+    const stays = state && line.dataset.state === "unreached"; // until there is an answer, however often it is tried
+    if (!stays) line.hidden = line.dataset.state !== state;
   }
   document.querySelector("#connection [data-detail]").textContent = detail;
 }
@@ -45,14 +45,15 @@ function fail(event, state, detail) {
   if (state === "lost") line.timers = [setTimeout(retry, Math.min(1000 * 2 ** line.tries++, LONGEST_RETRY))];
 }
 
-// A reply that is no page (an overloaded server, a proxy's error) must never take the form's place.
+// A reply that is no part of the page (an overloaded server, a proxy's error or login) must never take the form's place.
 document.addEventListener("htmx:before:swap", (event) => {
   if (!ours(event)) return;
   const { response, text } = event.detail.ctx;
-  if (response.headers.get("content-type")?.startsWith("text/html") && response.status < 500) return;
+  const isPart = response.headers.get("content-type")?.startsWith("text/html") && !/<(html|body)\b/i.test(text);
+  if (isPart && response.status < 500) return;
   event.preventDefault();
   const isProblem = response.headers.get("content-type")?.startsWith("application/problem+json");
-  fail(event, "refused", isProblem ? JSON.parse(text).detail : `HTTP ${response.status}.`);
+  fail(event, "refused", `${isProblem ? JSON.parse(text).detail : `HTTP ${response.status}`}.`);
 });
 
 document.addEventListener("htmx:after:swap", (event) => {

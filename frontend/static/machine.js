@@ -23,9 +23,9 @@ async function send(form, action, tell, signal) {
     const events = (rest + value).split("\n\n");
     rest = events.pop();
     for (const event of events) {
-      const said = JSON.parse(event.slice("data: ".length));
-      if ("page" in said) return said.page;
-      tell(said);
+      const count = JSON.parse(event.slice("data: ".length));
+      if ("page" in count) return count.page;
+      tell(count);
     }
   }
 }
@@ -37,19 +37,33 @@ async function sayEffect(form) {
   asked = new AbortController();
   const effect = form.querySelector("[data-effect]");
   try {
-    const tell = (said) => { if (said.done) effect.textContent = said.told; };
-    const same = pageOf(await send(form, "dry", tell, asked.signal)).getElementById(form.id);
+    const tell = (count) => { if (count.done) effect.textContent = count.text; };
+    const text = await send(form, "dry", tell, asked.signal);
+    const same = pageOf(text).getElementById(form.id);
     if (!same) return;
+    if ("overtaken" in same.dataset) return showTheirs(text);
+    effect.classList.remove("refused");
     effect.replaceChildren(...same.querySelector("[data-effect]").childNodes);
     form.querySelector("[data-apply]").hidden = same.querySelector("[data-apply]").hidden;
   } catch (error) {
-    if (error.name !== "AbortError") throw error;
+    if (error.name === "AbortError") return;
+    effect.textContent = document.querySelector("[data-end=broken]").textContent;
+    effect.classList.add("refused");
+    form.querySelector("[data-apply]").hidden = false; // for when the server answers
   }
+}
+
+// Somebody else was faster: the page with theirs, and what was typed here in the fields.
+function showTheirs(text) {
+  const { id } = document.activeElement;
+  show(text);
+  document.getElementById(id)?.focus();
 }
 
 document.addEventListener("input", (event) => {
   const form = event.target.closest("form[data-dry]");
   if (!form || event.target.matches(".every")) return;
+  asked?.abort(); // its answer is to what was typed before
   form.querySelector("[data-apply]").hidden = true;
   clearTimeout(waiting);
   if (form.id === "changing" && !form.querySelector(".pick input:checked, [name=everything]:checked")) return;
@@ -61,8 +75,17 @@ function show(text) {
   const found = page.querySelector("main");
   document.querySelector("main").replaceWith(found);
   document.title = page.title;
+  keepAddress(found);
   begin();
-  found.querySelector(".machine-strap:not([hidden]), [role=alert]")?.scrollIntoView({ block: "nearest" });
+  found.querySelector(".machine-strap:not([hidden]), .effect.refused, [role=alert]")?.scrollIntoView({ block: "nearest" });
+}
+
+// Once the form of the common values is closed, the address doesn't open it again.
+function keepAddress(found) {
+  const address = new URL(location.href);
+  if (address.searchParams.get("edit") !== "common" || found.querySelector(".every-axis.editing")) return;
+  address.searchParams.delete("edit");
+  history.replaceState(history.state, "", address);
 }
 
 // A long change: its count, and the button that stops it. What is stopped has changed nothing, and stays in the fields.
@@ -78,11 +101,11 @@ async function change(form, action) {
   stop.disabled = false;
   stop.onclick = () => stopping.abort();
   try {
-    show(await send(form, action, (said) => {
-      count.textContent = said.told;
-      bar.max = said.of || 1;
-      bar.value = said.done;
-      stop.disabled = said.saving;
+    show(await send(form, action, (now) => {
+      count.textContent = now.text;
+      bar.max = now.of || 1;
+      bar.value = now.done;
+      stop.disabled = now.saving;
     }, stopping.signal));
   } catch (error) {
     await tellEnd(error.name === "AbortError" ? "stopped" : "broken", strap.dataset.state);
@@ -107,7 +130,8 @@ async function tellEnd(end, before) {
 }
 
 function say(end) {
-  for (const said of document.querySelectorAll("[data-end]")) said.hidden = said.dataset.end !== end;
+  for (const line of document.querySelectorAll("[data-end]")) line.hidden = line.dataset.end !== end;
+  document.querySelector("[data-end]:not([hidden])")?.scrollIntoView({ block: "nearest" });
 }
 
 document.addEventListener("submit", (event) => {

@@ -7,7 +7,7 @@ export function mark() {
   const form = formOf();
   for (const message of form.querySelectorAll("p.error")) message.remove();
   for (const field of form.querySelectorAll("[aria-invalid]")) {
-    field.removeAttribute("aria-invalid");
+    for (const name of ["aria-invalid", "data-missing"]) field.removeAttribute(name);
     describe(field, (id) => !id.startsWith("e-"));
   }
   for (const item of document.querySelectorAll("#problems [data-field]")) {
@@ -17,6 +17,7 @@ export function mark() {
     const id = `e-${field.id.replace(/^f-/, "")}`;
     const ofCell = field.closest("#duty");
     const message = Object.assign(document.createElement("p"), { className: "error" });
+    message.toggleAttribute("data-missing", item.matches("[data-missing]"));
     const whole = ofCell || field.id === "phases";
     message.append(...[...item.cloneNode(true).childNodes].filter((part) => whole || part.matches?.("span, .offer")));
     if (ofCell) document.getElementById("duty-errors").append(message);
@@ -25,6 +26,7 @@ export function mark() {
     if (!first) continue;
     message.querySelector("span").id = id;
     field.setAttribute("aria-invalid", "true");
+    field.toggleAttribute("data-missing", item.matches("[data-missing]"));
     describe(field, () => true, id);
   }
 }
@@ -83,6 +85,9 @@ document.addEventListener("focusout", (event) => {
   const left = row && !unfinishedNumber(event.target) ? !row.contains(event.relatedTarget) : event.target.form === formOf();
   if (left && formOf().matches("[data-waiting]")) formOf().requestSubmit();
 });
+
+// A tolerance that is a number alone is percent.
+document.addEventListener("change", ({ target }) => target.matches(".tolerance") && (target.value = target.value.replace(/^[\d.,]+$/, "$& %")));
 
 // Behind a text that ends in a unit of its own the field's unit does not stand as well.
 document.addEventListener("input", ({ target }) => target.nextElementSibling?.matches(".unit") && (target.nextElementSibling.hidden = /[a-z]$/i.test(target.value)));

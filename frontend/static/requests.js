@@ -6,6 +6,15 @@ import { awaited, mark, unfold } from "./messages.js";
 import { begin, isReplacing, later, typed } from "./replacing.js";
 import { arrived, note, restoring, showAddress, showSteps } from "./undo.js";
 
+// Forms that may be too long for an address are posted. htmx takes the method before the request can be changed.
+function choose() {
+  const form = formOf();
+  const isLong = form && (restoring()?.content ?? contentOf(form)).length > 8000;
+  form?.setAttribute("hx-method", isLong ? "post" : form.method);
+}
+
+for (const kind of ["input", "submit"]) document.addEventListener(kind, choose, true);
+
 const replacesForm = (ctx) => ctx?.hx?.retarget === "#application";
 
 document.addEventListener("htmx:config:request", (event) => {

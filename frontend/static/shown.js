@@ -17,11 +17,11 @@ export function mark() {
   }
 }
 
-// A link within the page is no edit, and takes no entry of the history. Its target is shown: the section, the fold. The
-// address keeps a section, so that a reload comes back to it.
+// A link within the page is no edit, and takes no entry of the history. Its target is shown: the section, the fold; where
+// there is no section yet, the result. The address keeps a section, so that a reload comes back to it.
 document.addEventListener("click", (event) => {
   const link = event.target.closest('a[href^="#"]');
-  const target = link && document.getElementById(link.hash.slice(1));
+  const target = link && (document.getElementById(link.hash.slice(1)) ?? document.getElementById("result"));
   if (!target || event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
   event.preventDefault();
   const section = sectionOf(target);

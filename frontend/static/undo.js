@@ -56,13 +56,13 @@ function restore(content, says = "") {
   past.isSettled = true;
   forget();
   past.restoring = { content, before: fieldsOf(form), says };
-  form.setAttribute("hx-method", content.length > 8000 || new URLSearchParams(content).has("phases") ? "post" : "get");
   form.requestSubmit();
   showSteps();
 }
 
 addEventListener("popstate", (event) => {
-  if (!event.state || !formOf()) return;
+  if (!formOf()) return;
+  if (!event.state) return keep(); // a hash that somebody types into the address begins an entry
   past.at = event.state.at;
   restore(event.state.content);
 });

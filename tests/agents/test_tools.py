@@ -14,6 +14,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.selection import select
 from hpn.links.writer import to_link
 from tests.build import LIFTING, TURNING, Json, cycle, phase, worked_example
+from tests.report.cases import CASES
 
 SERVICE = "https://plm.example"
 EVERYTHING: Json = {
@@ -173,6 +174,15 @@ def test_what_an_answer_leaves_out_is_named(catalogue: Catalogue) -> None:
 
     assert "figures" in told("select", catalogue, application=application)["left_out"]
     assert "left_out" not in told("select", catalogue, application=cycle(phase(40, 250)))
+
+
+def test_notices_beyond_those_of_an_answer_are_named_as_left_out(catalogue: Catalogue) -> None:
+    application = CASES["everything"]
+    notices = select(Application.model_validate(application), catalogue, to_link).notices
+
+    reply = told("select", catalogue, application=application)
+
+    assert len(notices) > len(reply.get("notices", ())) and "notices" in reply["left_out"]
 
 
 def test_what_holds_over_the_tolerances_is_said(catalogue: Catalogue) -> None:

@@ -19,11 +19,11 @@ from playwright.sync_api import Browser, BrowserContext, Locator, Page, Playwrig
 AXE = Path(__file__).parents[2] / "frontend/node_modules/axe-core/axe.min.js"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 SHELL = "chromium-headless-shell"
-"""Chromium's engine without windows, at half the processor time; the long form and Lighthouse take all of Chromium."""
-# The browser looks nothing up outside this machine.
+"""Chromium's engine without windows, at half the processor time; the long form and Lighthouse use full Chromium."""
+# The browser resolves no host outside this machine.
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost"
 PATIENCE_S = int(os.environ.get("HPN_TEST_PATIENCE_S", "60"))
-"""How long anything may take on a busy machine; only what never comes takes that long."""
+"""Time limit of a wait, ample for a busy machine; only a failure takes that long."""
 expect.set_options(timeout=1000 * PATIENCE_S)
 
 
@@ -43,7 +43,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
             "HPN_CORS_ORIGINS": f"http://localhost:{port}",  # another origin than 127.0.0.1
         }
         process = subprocess.Popen(
-            # uvicorn's own --fd has each answer wait 40 ms: it takes a TCP socket for a Unix one
+            # uvicorn's own --fd delays each answer by 40 ms: it takes a TCP socket for a Unix one
             [sys.executable, "-c", SERVE, str(descriptor)],
             pass_fds=[descriptor],
             stdout=output,
@@ -79,7 +79,7 @@ def playwright_driver() -> Iterator[Playwright]:
 
 @pytest.fixture(scope="session")
 def chromium(playwright_driver: Playwright, soak: bool) -> Iterator[Browser]:
-    """The machine's Chromium, else Playwright's own."""
+    """Chromium of the machine, else Playwright's own."""
     names = BROWSERS if soak else (SHELL, *BROWSERS)
     path = next(filter(None, map(shutil.which, names)), None)
     browser = playwright_driver.chromium.launch(executable_path=path, args=[OFFLINE])
@@ -100,7 +100,7 @@ class Watch:
 
 
 class Visitor:
-    """Opens pages of the service, each in a context of its own, and watches them."""
+    """Opens pages of the service, each in its own context, and watches them."""
 
     def __init__(self, browser: Browser, server: str) -> None:
         self.browser, self.server = browser, server
@@ -133,9 +133,9 @@ class Visitor:
 
 @pytest.fixture
 def visitor(chromium: Browser, server: str) -> Iterator[Visitor]:
-    """Visitor whose pages must neither complain in the console nor ask another host for anything.
+    """Visitor whose pages must neither log errors or warnings nor send requests to other hosts.
 
-    A page of a test about errors says so itself: Chromium reports every 422 in the console.
+    Messages on status 422 are allowed: Chromium reports every 422, and tests on errors expect them.
     """
     visitor = Visitor(chromium, server)
     yield visitor
@@ -152,7 +152,7 @@ def open_section(page: Page, name: str) -> None:
 
 
 def show_all_sections(page: Page) -> None:
-    """Show the sections of the result one below the other, as without script, each with its content."""
+    """Show all sections of the result with their content, one below the other, as without script."""
     page.evaluate("delete document.querySelector('main').dataset.section")
     page.wait_for_function(
         "[...document.querySelectorAll('section[data-part]')].every(part => part.childElementCount > 1)"
@@ -182,7 +182,7 @@ def button(page: Page, name: str) -> Locator:
 
 
 ASKED_FOR = {rule: {"enabled": True} for rule in ("target-size", "label-content-name-mismatch")}
-"""WCAG 2.5.8 and 2.5.3: axe runs them where they are asked for."""
+"""Rules for WCAG 2.5.8 and 2.5.3, which axe runs only on request."""
 
 
 def reader_menu(page: Page) -> Locator:
@@ -201,7 +201,7 @@ def in_german(page: Page) -> None:
 def violations(page: Page) -> list[tuple[str, list[str]]]:
     """Rule and elements of each violation that axe finds in both themes; only contrast depends on the theme."""
     page.evaluate(AXE.read_text())
-    # The bar at the foot covers whatever is scrolled under it, by chance a field in part.
+    # The bar at the foot covers content that is scrolled under it, possibly part of a field.
     page.evaluate("document.querySelectorAll('.jump').forEach(bar => { bar.style.position = 'static' })")
     found = page.evaluate("rules => axe.run({ rules, resultTypes: ['violations'] })", ASKED_FOR)["violations"]
     page.emulate_media(color_scheme="dark")
@@ -209,7 +209,7 @@ def violations(page: Page) -> list[tuple[str, list[str]]]:
     return [(entry["id"], [node["html"] for node in entry["nodes"]]) for entry in found]
 
 
-# Chromium intercepts requests only some time after it is told to, so that a test holds them back in the page.
+# Chromium begins to intercept requests with a delay, so a test holds them back in the page.
 HOLD = """() => {
   const send = window.fetch;
   const released = new Promise((release) => {

@@ -1,4 +1,4 @@
-"""The page of the OpenAPI document, which needs no other host and keeps to the headers of every page."""
+"""Page of the OpenAPI document: needs no other host, and has the headers of every page."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Drawings of the page: what is marked together, and that every text has its place."""
+"""Drawings of the page: elements that are marked together, and texts that don't overlap."""
 
 import re
 from random import Random
@@ -34,7 +34,7 @@ def marked(page: Page) -> dict[str, list[str]]:
 
 
 def seen(page: Page, path: str) -> Any:
-    """Part of the one of the two drawings of the envelope that has room."""
+    """Part of the visible one of the envelope's two drawings."""
     return page.locator(f"#envelope {path}").locator("visible=true")
 
 
@@ -81,7 +81,7 @@ def test_each_phase_of_a_long_table_has_its_step(visitor: Visitor) -> None:
     [
         (f"{EXAMPLE}&FR=500&FA=200", 1440, (348, 400)),
         (f"{EXAMPLE}&FR=500&FA=200", 1920, (640, 480)),
-        (PHASES, 1440, (348, 400)),  # a table with loads takes room of the result
+        (PHASES, 1440, (348, 400)),  # a table with loads narrows the result
         (PHASES, 1920, (448, 515)),
     ],
 )

@@ -1,4 +1,4 @@
-"""A first visit: what the page is for, two ways to begin, and the worked example below, labelled as one."""
+"""First visit: the page's purpose, two ways to begin, and below them the worked example, labelled as such."""
 
 import re
 

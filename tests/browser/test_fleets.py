@@ -1,4 +1,4 @@
-"""A machine's axes: a table with German headings goes up, is put right and sized, and is kept as a project."""
+"""Axes of a machine: a table with German headings is uploaded, corrected, sized, and saved as a machine."""
 
 import re
 from pathlib import Path
@@ -11,7 +11,7 @@ AXES = 200
 
 
 def table() -> str:
-    """A CSV as a German spreadsheet writes it: a title, the phases of the axes, a column that only its owner knows."""
+    """CSV of a German spreadsheet: a title, the phases of the axes, a column with an unclear heading."""
     rows = ["Anlage 4;;;;;", "Achse;Nr.;Moment [Nm];Wert;Dauer [ms];Bemerkung"]
     for axis in range(1, AXES + 1):
         for phase, (share, milliseconds) in enumerate(((1, 300), (0.4, 2000)), start=1):
@@ -49,7 +49,7 @@ def test_a_table_of_axes_becomes_a_project(visitor: Visitor, tmp_path: Path) -> 
     expect(page.locator("#duty [name=n]").first).to_have_value("210")
     page.go_back()
 
-    page.get_by_text("Save as a project").click()
+    page.get_by_text("Save machine").click()
     page.get_by_role("textbox", name="Title").fill("Line 4")
     page.get_by_label("Reference").fill("P-77")
     page.get_by_role("button", name="Save", exact=True).click()

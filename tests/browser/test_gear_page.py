@@ -1,4 +1,4 @@
-"""The page of a gear: which load its shaft may carry, its neighbours, and what the handbook says, folded."""
+"""Page of a gear: permitted load of its shaft, its neighbours, and the handbook's statements, folded."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Access that the headers deny and permit in a real browser."""
+"""Access that headers deny and permit in a real browser."""
 
 from playwright.sync_api import Browser, expect
 
@@ -18,7 +18,7 @@ OTHERS = """async ({ server, icon }) => {
 
 
 def test_scripts_of_a_permitted_origin_read_the_api_and_no_page_embeds_anything(chromium: Browser, server: str) -> None:
-    context = chromium.new_context(bypass_csp=True)  # of the page that stands for another application
+    context = chromium.new_context(bypass_csp=True)  # CSP of the page that plays another application
     page = context.new_page()
     page.goto(server.replace("127.0.0.1", "localhost"))
     icon = page.locator('link[rel="icon"]').get_attribute("href")
@@ -31,7 +31,7 @@ def test_scripts_of_a_permitted_origin_read_the_api_and_no_page_embeds_anything(
 
 def test_the_page_copies_in_spite_of_the_features_it_does_without(visitor: Visitor) -> None:
     page = visitor.open("/catalogue/HPN-20A-5")
-    page.context.grant_permissions(["clipboard-write"])  # the headless shell asks nobody; a policy's refusal stands
+    page.context.grant_permissions(["clipboard-write"])  # the headless shell has no prompt; a policy still applies
     button = page.locator("[data-copies]").first
     done = button.get_attribute("data-done") or ""
 

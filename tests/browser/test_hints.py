@@ -1,4 +1,4 @@
-"""Hints of the form: told while a field has the focus, over the next row, so that nothing moves."""
+"""Hints of the form: shown over the next row while a field has the focus, so that nothing moves."""
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -8,7 +8,7 @@ from tests.browser.test_page import EXAMPLE
 
 
 def tops(page: Page) -> list[float]:
-    """Where the fields of the form stand."""
+    """Vertical positions of the form's visible fields in px."""
     fields = page.locator("#application .field")
     found: list[float] = fields.evaluate_all(
         "all => all.filter(each => each.checkVisibility()).map(each => each.getBoundingClientRect().top)"

@@ -1,4 +1,4 @@
-"""Journeys of an engineer who wants to know why: the remedy followed, gears compared, the calculation read."""
+"""Journeys of an engineer in search of reasons: the remedy followed, gears compared, the calculation read."""
 
 import re
 
@@ -185,7 +185,7 @@ INSIDE = """() => [...document.querySelectorAll(".result *")].filter((box) => {
   return box.checkVisibility() && box.closest("#candidates, #compare, #calculation")
     && (scrolls || (!box.closest(".visually-hidden, svg") && box.getBoundingClientRect().right > innerWidth + 1));
 }).map((box) => `${box.closest(".section").id} ${box.className || box.localName}`)"""
-"""Boxes of the three sections that scroll by themselves, or are wider than the page."""
+"""Boxes of the three sections that have their own scroll bar, or are wider than the page."""
 
 
 @pytest.mark.parametrize("width", [390, 1440])
@@ -222,7 +222,7 @@ def test_the_head_of_the_candidates_sticks_below_the_title_block(visitor: Visito
     assert top >= page.locator(".head").evaluate(foot) - 1
 
 
-@pytest.mark.soak  # all sections are checked on a phone
+@pytest.mark.soak  # test_page.py checks all sections on a phone
 def test_remedy_calculation_and_comparison_are_accessible_in_both_themes(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE + "&gear=HPN-14A-5&pin=HPN-20A-5&FR=300", width=1000)
     assert violations(page) == []

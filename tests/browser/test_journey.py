@@ -1,4 +1,4 @@
-"""A machine of 40 axes in German: pasted, changed, revised, compared, printed; then by two people, then on a phone."""
+"""Machine of 40 axes in German: pasted, changed, revised, compared, printed; then by two people, then on a phone."""
 
 import re
 from io import BytesIO
@@ -12,7 +12,7 @@ from tests.browser.conftest import Visitor, in_german, violations
 from tests.machines import NAMES
 
 PHASES = ((1.0, 90, 300), (0.5, 180, 1200), (-0.8, 90, 300))
-"""Share of the torque, speed and time of the phases of each axis."""
+"""Phases of each axis: share of the torque, speed in rpm, time in ms."""
 
 
 def cells() -> str:
@@ -30,13 +30,13 @@ def cells() -> str:
 
 
 def fits(page: Page, width: int) -> None:
-    """Nothing scrolls sideways, and axe finds nothing."""
+    """Assert that the page does not scroll sideways, and that axe finds no violation."""
     assert page.evaluate("document.documentElement.scrollWidth") == width
     assert violations(page) == []
 
 
 def pasted(visitor: Visitor) -> Page:
-    """The machine of the cells, sized and saved in German."""
+    """Page of the machine made of the cells, sized and saved in German."""
     page = visitor.open("/machines")
     in_german(page)
     page.get_by_label("oder Zellen aus einer Tabellenkalkulation").fill(cells())
@@ -53,13 +53,13 @@ def pasted(visitor: Visitor) -> Page:
 
 
 def changed(page: Page, field: str, text: str) -> None:
-    """Type into a cell of the first phase, and wait until the address has it."""
+    """Type into a cell of the first phase, and wait until the address contains the text."""
     page.locator(f"#{field}-0").fill(text)
     page.wait_for_url(f"**{field}={text}&**")
 
 
 def saved(page: Page) -> None:
-    """Save the axis back with its key."""
+    """Save the axis by keyboard."""
     page.keyboard.press("Control+s")
     page.wait_for_url(re.compile(r"/axes/\d+$"))
 
@@ -70,7 +70,7 @@ def row(page: Page, name: str) -> Locator:
 
 
 def revision(page: Page, label: str, note: str) -> None:
-    """Save the working copy as the next revision, which the page names."""
+    """Save the working copy as the next revision, whose label the page proposes."""
     page.get_by_text(f"Revision {label} speichern").click()
     form = page.get_by_role("form", name="Revision speichern")
     expect(form.get_by_label("Kennung")).to_have_value(label)
@@ -89,7 +89,7 @@ def test_forty_axes_are_pasted_changed_revised_compared_and_printed(visitor: Vis
     page.get_by_label("Maximale Auslastung").fill("0,9")
     expect(page.locator("#every-axis .effect")).to_contain_text("Achse")
     page.get_by_role("button", name="Auf 40 Achsen anwenden").click()
-    expect(page.locator("#every-axis:not(.editing)")).to_contain_text("90")  # only then it is saved
+    expect(page.locator("#every-axis:not(.editing)")).to_contain_text("90")  # it is saved only then
     page.goto(f"{machine}/revisions")
     revision(page, "A", "u gemeinsam")
 
@@ -125,7 +125,7 @@ def test_forty_axes_are_pasted_changed_revised_compared_and_printed(visitor: Vis
 
 @pytest.fixture
 def machine(server: str) -> str:
-    """Address of a machine of two axes."""
+    """Address of a machine with two axes."""
     phases = [{"torque_Nm": 20, "speed_rpm": 100, "duration_s": 1}]
     axes = [{"name": name, "application": {"duty_cycle": {"phases": phases}}} for name in ("Hub", "Dreh")]
     sent = {"title": "Zelle", "axes": axes}
@@ -153,7 +153,7 @@ def test_two_browsers_never_meet_on_two_axes_and_lose_nothing_on_one(visitor: Vi
     expect(table.get_by_role("row", name="Drehmoment")).to_contain_text("30")
     expect(table.get_by_role("row", name="Drehzahl")).to_contain_text("120")
     fits(second, 1440)
-    for watch in visitor.watches:  # the browser says of an answer that it is a 412
+    for watch in visitor.watches:  # the browser reports an answer 412
         watch.console = [text for text in watch.console if "status of 412" not in text]
     second.get_by_role("link", name="Anderer Stand mit meinen Änderungen").click()
     expect(second.locator("#T-0")).to_have_value("30")
@@ -178,6 +178,7 @@ def test_every_step_is_reached_on_a_phone_and_nothing_scrolls_sideways(visitor: 
     page.get_by_role("link", name="Nächste Achse: Dreh").click()
     page.wait_for_url("**/axes/2")
     page.get_by_role("link", name="Zelle").click()
+    page.get_by_role("button", name="Mehr").click()
     page.get_by_role("link", name="Revisionen").click()
     revision(page, "A", "erste")
     fits(page, 390)

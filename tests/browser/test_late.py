@@ -1,4 +1,4 @@
-"""Edits while an answer is under way, or while there is none, neither lose nor mix up anything."""
+"""Edits before or during an answer: no input is lost or mixed up."""
 
 import re
 from functools import partial
@@ -42,7 +42,7 @@ FAINT = """() => {
   }
   return found;
 }"""
-"""Texts of the result whose contrast, of drawings too, is below the 4.5 of WCAG 1.4.3."""
+"""Texts of the result, drawings included, with a contrast below the 4.5 of WCAG 1.4.3."""
 
 
 def torque(page: Page, phase: int) -> Any:
@@ -54,7 +54,7 @@ def pause(page: Page) -> Any:
 
 
 def average_torque(first: float) -> str:
-    """T_av of the example by equation 17.2, as the calculation writes it, with another torque in its first phase."""
+    """T_av of the example with another torque in its first phase, by equation 17.2, formatted as in the calculation."""
     phases = ((first, 250 * 0.3), (32, 500 * 3), (20, 250 * 0.4))
     return f"{(sum(T ** (10 / 3) * turns for T, turns in phases) / sum(turns for _, turns in phases)) ** 0.3:.9g}"
 
@@ -62,7 +62,7 @@ def average_torque(first: float) -> str:
 def test_calculation_that_is_opened_meanwhile_is_that_of_the_answer(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     shown = page.locator("#calculation")
-    for first in (80, 96):  # once without a calculation so far, once with that of before
+    for first in (80, 96):  # first without an earlier calculation, then with one
         with answer_held_back(page, partial(torque(page, 1).fill, str(first))):
             open_section(page, "Calculation")
         expect(shown).to_contain_text(f"={average_torque(first)}\u202fNm≤")
@@ -163,7 +163,7 @@ def test_while_an_input_is_refused_every_section_keeps_the_last_answer_readable(
     torque(page, 1).fill("abc")
     expect(page.locator(".verdict .outdated")).to_be_visible()
     for name in ("Overview", "Bearing", "Drive", "Candidates", "Compare", "Calculation", "Notes"):
-        open_section(page, name)  # of which none but the first was there before
+        open_section(page, name)  # only the first was there before
         section = page.locator(f"#{name.lower()}")
         expect(section).to_have_text(re.compile(r"\w.{80}", re.DOTALL), use_inner_text=True)
         ink = section.evaluate("section => getComputedStyle(section).color")
@@ -217,7 +217,7 @@ def test_file_that_is_asked_for_while_an_answer_is_under_way_is_of_that_answer(v
 
 
 def torque_asked(request: Request) -> str:
-    """First torque of the link that a file is asked for with."""
+    """First torque in the link of a request for a file."""
     (link,) = parse_qs(request.post_data or "")["link"]
     return parse_qs(link.removeprefix("/?"))["T"][0]
 
@@ -260,7 +260,7 @@ AT_ONCE = """() => {
     document.getElementById("application").requestSubmit();
   }).observe(document.body, { childList: true, subtree: true });
 }"""
-"""Sends the next form as soon as it is in the page: Back pressed twice did, and the page was loaded anew."""
+"""Submits the next form as soon as it is in the page, as Back pressed twice did; the page was then reloaded."""
 
 
 def test_a_form_that_has_just_been_put_in_place_is_answered_in_the_page(visitor: Visitor) -> None:
@@ -268,7 +268,7 @@ def test_a_form_that_has_just_been_put_in_place_is_answered_in_the_page(visitor:
     page.evaluate(AT_ONCE)
     with page.expect_request(lambda request: "T=20" in request.url and "T=32" not in request.url) as sent:
         edit_row(page, 2, "Remove")
-    assert "hx-request" in sent.value.headers  # else the browser loads the page
+    assert "hx-request" in sent.value.headers  # otherwise the browser would load the page
     sent.value.response()
     expect(torque(page, 3)).to_have_count(0)
     assert page.evaluate("window.here") is True
@@ -330,7 +330,7 @@ def test_an_input_that_an_undo_brings_back_is_not_folded_away(visitor: Visitor) 
 
 @pytest.mark.parametrize("late", ["htmx", "script"])
 def test_inputs_given_before_the_scripts_are_ready_are_answered(visitor: Visitor, late: str) -> None:
-    """Given before htmx takes the form, which it does in a timer after the script has run, or before the script."""
+    """Input before htmx takes the form, which it does in a timer after its script has run, or before the script."""
     page = visitor.open("/catalogue")
     held: list[Route] = []
     if late == "htmx":
@@ -374,3 +374,17 @@ def test_sections_of_a_long_cycle_come_when_they_come_into_sight_and_are_of_the_
     expect(page.locator("#calculation math").first).to_be_visible()
     open_section(page, "Candidates")
     expect(table.get_by_role("row").nth(1)).to_be_visible()
+
+
+def test_a_page_of_something_between_takes_no_place_of_the_result(visitor: Visitor) -> None:
+    page = visitor.open(EXAMPLE)
+    page.route("**/?*", lambda route: route.fulfill(content_type="text/html", body="<body>Please log in</body>"))
+
+    torque(page, 1).fill("41")
+
+    expect(page.locator("#connection")).to_contain_text("Not calculated: HTTP 200. Your input is kept.")
+    expect(page.locator("#result .verdict")).to_be_visible()
+    page.unroute("**/?*")
+    page.get_by_role("button", name="Try now").click()
+    expect(page).to_have_url(re.compile("T=41&"))
+    expect(page.get_by_text("Not calculated")).to_be_hidden()

@@ -1,4 +1,4 @@
-"""Lighthouse on the page as it is served, with its desktop and its mobile preset."""
+"""Lighthouse on the served page, with the desktop and mobile presets."""
 
 import json
 import os
@@ -15,13 +15,13 @@ LIGHTHOUSE = Path(__file__).parents[2] / "frontend/node_modules/lighthouse/cli/i
 NODE = Path(__file__).parents[2] / ".venv/node/bin"
 PERFORMANCE = {"desktop": 100, "mobile": 95}
 SHORT = {("/", "mobile")}
-"""Audit of `make test`: the start page with the slower of both presets. `make soak` audits all pages with both."""
+"""Audit of `make test`: the start page with the slower preset. `make soak` audits all pages with both."""
 
 PAGES = ("/", "/catalogue", "/catalogue/HPN-20A-5")
-"""Pages for search engines; the others ask not to be indexed, which Lighthouse counts as a fault."""
+"""Pages for search engines; the others forbid indexing, which Lighthouse counts as a fault."""
 
 TRIES = 4
-"""Other work on the machine lowers the performance score and nothing raises it, so the best of some tries counts."""
+"""Number of tries, of which the best counts: other work on the machine can only lower the performance score."""
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_lighthouse_finds_the_page_fast_accessible_and_sound(
 
 
 def _audit(address: str, preset: str, folder: Path) -> dict[str, int]:
-    """Scores by category; none where the browser lost its trace, which happens on a busy machine: run it again."""
+    """Scores by category; empty if the browser lost its trace, as happens on a busy machine: run it again."""
     report = folder / "report.json"
     command = [
         shutil.which("node", path=f"{NODE}{os.pathsep}{os.environ['PATH']}") or "node",

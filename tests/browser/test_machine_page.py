@@ -1,10 +1,12 @@
-"""A machine is worked on from its page: by keys, with the effect said before, on a desk and on a phone."""
+"""Work on a machine from its page: by keyboard, with a preview of the effect, on a desktop and on a phone."""
+
+import re
 
 import httpx
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
-from tests.browser.conftest import Visitor, violations
+from tests.browser.conftest import Visitor, in_german, violations
 from tests.fleet.test_machine_page import MACHINE
 
 
@@ -45,7 +47,46 @@ def test_common_values_open_in_place_and_say_their_effect_while_they_are_typed(v
     assert violations(page) == []
     page.get_by_role("button", name="Apply to 4 axes").click()
     expect(page.locator("#every-axis")).to_contain_text("50")
+    told = page.locator(".machine-strap:not([hidden])")
+    assert told.evaluate("told => told.scrollHeight") <= 48  # one line: sentence and Undo, without a blank line below
+    assert page.evaluate("document.documentElement.scrollWidth") == page.evaluate("innerWidth")
     page.go_back()
+
+
+@pytest.mark.parametrize("script", [True, False])
+def test_applied_common_values_do_not_open_again_with_the_page(visitor: Visitor, machine: str, script: bool) -> None:
+    page = visitor.open(f"{machine}?show=todo&edit=common", script=script)
+    page.get_by_label("Maximum utilisation").fill("0.5")
+    if not script:
+        page.get_by_role("button", name="Show the effect").click()
+    page.get_by_role("button", name="Apply to 4 axes").click()
+    expect(page.locator(".machine-strap:not([hidden])")).to_contain_text("Changed.")
+    expect(page).not_to_have_url(re.compile("edit="))
+
+    page.goto(page.url)  # as from a bookmark: a change is sent once
+
+    expect(page.locator("#every-axis")).to_contain_text("50")
+    expect(page.get_by_role("button", name="Apply to 4 axes")).to_have_count(0)
+    expect(page.locator(".filter [aria-current]")).to_contain_text("To do")
+    assert page.url.endswith(f"{machine}?show=todo")
+
+
+def test_who_types_after_somebody_else_has_saved_sees_theirs_and_applies_own_values(
+    visitor: Visitor, server: str, machine: str
+) -> None:
+    page = visitor.open(machine)
+    page.keyboard.press("e")
+    theirs = {"common": {"requirements": {"utilisation": 0.8}}}
+    httpx.patch(f"{server}/api/v1{machine}", json=theirs, trust_env=False).raise_for_status()
+    page.get_by_label("Maximum utilisation").fill("0.5")
+    expect(page.locator("#every-axis .effect")).to_contain_text("Somebody else has changed this")
+    expect(page.locator("#every-axis")).to_contain_text("somebody else has set 0.8 since")
+    expect(page.get_by_label("Maximum utilisation")).to_be_focused()
+    expect(page.get_by_label("Maximum utilisation")).to_have_value("0.5")
+    page.get_by_role("button", name="Apply to 4 axes").click()
+    expect(page.get_by_text("Changed.")).to_be_visible()
+    kept = httpx.get(f"{server}/api/v1{machine}?fields=common", trust_env=False).json()
+    assert kept["common"]["requirements"]["utilisation"] == 0.5
 
 
 @pytest.mark.parametrize("place", ["machine", "revisions", "list"])
@@ -81,6 +122,24 @@ def test_a_phone_shows_every_axis_and_its_marks(visitor: Visitor, machine: str, 
     assert violations(page) == []
 
 
+def test_common_values_typed_while_the_server_is_silent_are_applied_once_it_answers(
+    visitor: Visitor, machine: str
+) -> None:
+    page = visitor.open(f"{machine}?edit=common")
+    page.route("**/change*", lambda route: route.abort())
+    page.get_by_label("Maximum utilisation").fill("0.5")
+    expect(page.locator("#every-axis .effect")).to_contain_text("No answer: the connection broke off")
+    expect(page.get_by_label("Maximum utilisation")).to_have_value("0.5")
+
+    page.unroute("**/change*")
+    for watch in visitor.watches:
+        watch.console = [text for text in watch.console if "ERR_FAILED" not in text]
+    page.get_by_role("button", name="Apply to 4 axes").click()
+
+    expect(page.locator(".machine-strap:not([hidden])")).to_contain_text("Changed.")
+    expect(page.locator("#every-axis")).to_contain_text("50")
+
+
 @pytest.fixture
 def revised(server: str, machine: str) -> str:
     """Address of a machine that differs from its revision A and has tolerances."""
@@ -107,6 +166,15 @@ def test_what_changed_since_the_revision_stands_in_the_table_and_beside_it(
     expect(page.locator("#axis-1 + .since-row")).to_contain_text("HPN-")
     assert page.evaluate("document.documentElement.scrollWidth") == width
     assert violations(page) == []
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_the_table_of_axes_fits_beside_the_gear_list(visitor: Visitor, revised: str, language: str) -> None:
+    page = visitor.open(revised)
+    if language == "de":
+        in_german(page)
+
+    assert page.locator(".panel.axes").evaluate("axes => axes.scrollWidth <= axes.clientWidth")
 
 
 @pytest.mark.parametrize("script", [True, False])
@@ -152,7 +220,7 @@ def test_a_long_change_shows_its_count_and_is_stopped_without_a_trace(visitor: V
     body = {"axes": axes, "common": {"tolerances": tolerances}}
     machine = str(httpx.post(f"{server}/api/v1/machines", json=body, trust_env=False, timeout=600).json()["url"])
     page = visitor.open()
-    page.route("**/kinds", lambda route: route.fulfill(body=""))  # which would keep the server busy after this test
+    page.route("**/kinds", lambda route: route.fulfill(body=""))  # it would keep the server busy after this test
     page.goto(f"{server}{machine}?edit=common")
     page.get_by_label("Maximum utilisation").fill("0.5")
     apply, work = page.get_by_role("button", name="Apply to 1"), page.get_by_role("region", name="Sizing again")
@@ -169,3 +237,27 @@ def test_a_long_change_shows_its_count_and_is_stopped_without_a_trace(visitor: V
     expect(page.get_by_label("Maximum utilisation")).to_have_value("0.5")
     apply.click()
     expect(page.get_by_text("Changed.")).to_be_visible()
+
+
+def test_the_head_and_the_columns_of_a_machine_with_tolerances_fit_in_german(visitor: Visitor, revised: str) -> None:
+    page = visitor.open(revised)
+    in_german(page)
+
+    name, limit = page.locator(".machine-block .largest .name"), page.locator(".allowed text")
+    expect(limit).to_contain_text("u = ")
+    for width in (1440, 1280, 1100, 1024, 800, 390):
+        page.set_viewport_size({"width": width, "height": 900})
+        is_below, is_behind = (
+            edge(name, one) <= edge(limit, other) for one, other in (("bottom", "top"), ("right", "left"))
+        )
+        assert is_below or is_behind, width
+        table = page.locator(".panel.axes")
+        assert table.evaluate("table => table.scrollWidth <= table.clientWidth"), width
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+    expect(page.locator("td.worst").first).to_be_visible()  # on the phone, too
+
+
+def edge(thing: Locator, name: str) -> float:
+    """Edge of the content of an element."""
+    content = "const content = new Range(); content.selectNodeContents(thing)"
+    return float(thing.evaluate(f"thing => {{ {content}; return content.getBoundingClientRect().{name} }}"))

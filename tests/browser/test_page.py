@@ -28,7 +28,7 @@ def torque(page: Page, phase: int) -> Any:
 
 
 def tab_to(page: Page, role: Literal["textbox", "button", "checkbox"], name: str) -> None:
-    """Press Tab until the control of this role and name has the focus."""
+    """Press Tab until the control with this role and name has the focus."""
     wanted = page.get_by_role(role, name=name, exact=True)
     for _ in range(60):
         if wanted.evaluate("element => element === document.activeElement"):
@@ -200,6 +200,18 @@ def test_phase_left_unfinished_is_reported_when_its_row_is_left(visitor: Visitor
     expect(page.get_by_label("Speed, phase 4")).to_have_accessible_description("is missing")
 
 
+def test_a_missing_diameter_is_asked_for_in_amber_and_a_wrong_one_is_refused_in_red(visitor: Visitor) -> None:
+    page = visitor.open(f"{EXAMPLE}&dt=belt&dd=60")
+    amber = page.locator("form .waiting").first.evaluate("waits => getComputedStyle(waits).color")
+    diameter, said = page.get_by_label("Pitch diameter"), page.locator("form .error")
+    diameter.fill("")
+    expect(page.locator("#problems .named")).to_have_text("Still to enter: Pitch diameter")
+    expect(said).to_have_css("color", amber)
+    diameter.fill("x")
+    expect(page.locator("#problems .named")).to_have_text("To correct: Pitch diameter")
+    expect(said).not_to_have_css("color", amber)
+
+
 def test_without_script_the_form_calculates_and_edits_rows(visitor: Visitor) -> None:
     page = visitor.open("/", script=False)
     expect(selected(page)).to_contain_text("HPN-20A-5")
@@ -322,7 +334,7 @@ def test_nothing_makes_the_page_scroll_sideways(visitor: Visitor, width: int) ->
     assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
-# All sections are checked on a phone, one below the other as they stand without script.
+# All sections are checked on a phone, one below the other as without script.
 @pytest.mark.parametrize(
     ("path", "width"),
     [

@@ -1,4 +1,4 @@
-"""Pairs in the browser, as a new user comes to them: a data sheet is pasted, its list named, a pair taken."""
+"""Pairs in the browser, for a new user: a data sheet is pasted, its list named, a pair taken."""
 
 import re
 
@@ -18,7 +18,7 @@ HEAD = (
 
 
 def sheet(count: int) -> str:
-    """Rows of a data sheet as a spreadsheet copies them, inertias in kg·cm²."""
+    """Rows of a data sheet as copied from a spreadsheet, inertias in kg·cm²."""
     rows = []
     for number in range(count):
         torque = 0.3 * 1.045**number
@@ -60,3 +60,22 @@ def test_the_lists_of_motors_have_a_page(visitor: Visitor, width: int, dark: boo
     assert violations(page) == []
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert width == 1440 or page.evaluate(TOO_SMALL, [MAIN, LEAST_PX, TOUCH_PX]) == []
+
+
+def test_a_curve_typed_into_the_form_is_judged_at_once_and_a_part_of_a_point_is_said(visitor: Visitor) -> None:
+    """By hand: M_c at 1,000 rpm is 2.8 - 0.4 / 3 Nm, the RMS torque √((4² · 0.3 + 1² · 0.5) / 1.8) Nm."""
+    page = visitor.open("/?T=40&n=100&t=0.3&T=10&n=300&t=0.5&tp=1&i=10&size=20A")
+    page.locator("#group-motor summary").click()
+    points = page.get_by_label("Motor torque over speed")
+
+    points.press_sequentially("0 : 2.8 : 7.2\n3000 : 2.4 : 7.2\n6000 : 1.5")
+    points.press("Tab")
+    expect(page.locator("#e-mcv")).to_contain_text("point 3: give speed, continuous and peak torque")
+    points.press_sequentially(" : 3")
+    points.press("Tab")
+
+    row = page.get_by_role("row").filter(has_text="Motor rated torque").first
+    expect(row).to_contain_text("1.72")
+    expect(row).to_contain_text("2.67")
+    expect(page).to_have_url(re.compile(r"mcv=3000:2\.4:7\.2"))  # after the answer is on the page
+    assert violations(page) == []

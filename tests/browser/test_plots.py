@@ -1,4 +1,4 @@
-"""Pictures in a real browser: drawings at once, plots on demand; they follow the form and say what the API says."""
+"""Pictures in a real browser: drawings at once, plots on demand; they follow the form and agree with the API."""
 
 import re
 from collections.abc import Callable
@@ -25,7 +25,7 @@ def section(page: Page) -> Any:
 
 
 def plot(page: Page, name: str = "Loads in the envelope") -> Any:
-    """A plot, unfolded and drawn. One that still waits for its answer would be folded by a second click."""
+    """Plot, unfolded and drawn; clicked only if folded, as a second click would fold a plot that still loads."""
     found = page.get_by_role("img", name=re.compile(name))
     zoom = page.locator("#sizes_figure" if "size" in name else "#bearing_figure")
     if zoom.get_attribute("open") is None:
@@ -36,7 +36,7 @@ def plot(page: Page, name: str = "Loads in the envelope") -> Any:
 
 
 def drawn(page: Page, name: str = "Loads in the envelope") -> Any:
-    """Data and axes that Plotly holds of a plot."""
+    """Plotly's data and axes of a plot."""
     return plot(page, name).evaluate(
         "({ firstElementChild: p }) => ({"
         " data: p.data.map(({ x, y, text, meta, line }) => ({ x, y, text, meta, line })),"
@@ -45,7 +45,7 @@ def drawn(page: Page, name: str = "Loads in the envelope") -> Any:
 
 
 def once(page: Page, holds: Callable[[Any], bool]) -> Any:
-    """Data and axes of a plot, as soon as a condition holds."""
+    """Data and axes of a plot once a condition holds."""
     for _ in range(20 * PATIENCE_S):
         if holds(state := drawn(page)):
             return state
@@ -108,7 +108,7 @@ def test_verdict_changes_where_the_constant_load_crosses_the_drawn_curve(
     page = visitor.open(CONSTANT.format(FR=100, FA=axial, bm=model))
     radial, limit = envelopes(visitor, playwright_driver, "20A", speed_rpm=300, model=model)[1.0]
     assert curves(drawn(page)["data"])[1.0] == (radial, limit)
-    # On the segment between two corners that holds this axial load.
+    # On the segment between two corners that contains this axial load.
     k = next(k for k in range(len(limit) - 1) if limit[k] >= axial >= limit[k + 1])
     crossing = radial[k] + (radial[k + 1] - radial[k]) * (limit[k] - axial) / (limit[k] - limit[k + 1])
 
@@ -184,7 +184,7 @@ NAMES = """plot => [...plot.querySelectorAll(".annotation")].map(name => {
   const box = name.getBoundingClientRect();
   return [name.textContent.replaceAll("\\u200b", ""), box.left, box.top, box.right, box.bottom];
 })"""
-"""Names along the curves of a plot, with the boxes around them."""
+"""Names along the curves of a plot, with their bounding boxes."""
 
 
 def test_a_zoomed_plot_is_as_wide_as_its_section_and_names_what_is_in_sight(visitor: Visitor) -> None:
@@ -201,7 +201,7 @@ def test_a_zoomed_plot_is_as_wide_as_its_section_and_names_what_is_in_sight(visi
     page.mouse.down()
     page.mouse.move(frame["x"] + 700, frame["y"] + 400, steps=5)
     page.mouse.up()
-    expect(plot(page).locator(".annotation", has_text="Pm")).to_be_visible()  # beyond the section: at its edge
+    expect(plot(page).locator(".annotation", has_text="Pm")).to_be_visible()  # its load is outside: at the edge
 
     names = plot(page).evaluate(NAMES)
     assert curves_named & {name for name, *_ in names}

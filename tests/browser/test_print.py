@@ -28,7 +28,7 @@ def test_answer_prints_on_one_page_of_the_readers_paper(visitor: Visitor, units:
 
 
 def printed(page: Page) -> list[str]:
-    """Texts of the sheets of a page, as Chromium prints them."""
+    """Texts of a page's printed sheets."""
     sheets = pypdfium2.PdfDocument(page.pdf(prefer_css_page_size=True))
     return [" ".join(sheet.get_textpage().get_text_range().split()) for sheet in sheets]
 
@@ -40,7 +40,7 @@ def test_saved_selection_prints_its_candidates(visitor: Visitor) -> None:
     page.emulate_media(media="print")
     candidates = page.get_by_role("table", name="Suitable")
     expect(candidates.get_by_role("row", name=re.compile("HPN-20A-5"))).to_be_visible()
-    text = "".join(printed(page)).replace(" ", "")  # Chromium sets letters one by one, and some far apart
+    text = "".join(printed(page)).replace(" ", "")  # Chromium prints single letters, some far apart
     listed = text[text.index("Candidates") :]
     assert listed.index("HPN-32A-5") < listed.index("HPN-14A-5")
 
@@ -58,7 +58,7 @@ def test_the_worked_example_as_saved_takes_three_sheets_with_running_heads(
     reader_menu(page).click()
     with page.expect_navigation():
         page.get_by_role("button", name=units).click()
-    texts = [text.replace(" ", "") for text in printed(page)]  # letters that are kerned read as if apart
+    texts = [text.replace(" ", "") for text in printed(page)]  # kerned letters read as separate
     assert len(texts) <= 3, texts[-1][:600]
     for number, text in enumerate(texts, 1):
         assert text.startswith(f'Infeed"turret"\\C{number}/{len(texts)}')

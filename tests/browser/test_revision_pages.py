@@ -1,4 +1,4 @@
-"""Revisions in a browser: two states chosen by keys and compared, on a desk and on a phone."""
+"""Revisions in a browser: two states chosen by keyboard and compared, on a desktop and on a phone."""
 
 import httpx
 import pytest
@@ -33,6 +33,25 @@ def test_two_revisions_are_chosen_by_keys_and_compared(visitor: Visitor, machine
     expect(page.get_by_role("row", name="Infeed belt")).to_contain_text("5")
     assert page.evaluate("document.documentElement.scrollWidth") == width
     assert violations(page) == []
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("width", [1440, 1280, 1024])
+def test_the_states_that_are_compared_stand_in_one_line(
+    visitor: Visitor, machine: str, language: str, width: int
+) -> None:
+    page = visitor.open(f"{machine}/revisions?from=A&to=now", width)
+    if language == "de":
+        in_german(page)
+
+    heading = page.locator("#compared-heading")
+    line = heading.evaluate("heading => parseFloat(getComputedStyle(heading).lineHeight)")
+    assert heading.evaluate("heading => heading.clientHeight") < 1.9 * line
+    fields = page.locator(".comparison .states :is(select, button)").all()
+    assert len({round(field.evaluate("field => field.getBoundingClientRect().bottom")) for field in fields}) == 1
+    for cell in page.locator(".comparison .machine-block :is(.name, .value), .compared-axes td").all():
+        assert cell.evaluate("cell => cell.scrollWidth <= cell.clientWidth + 1")  # rounded up
+    assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
 @pytest.mark.parametrize("width", [1440, 390])

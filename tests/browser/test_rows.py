@@ -42,13 +42,32 @@ def test_every_edit_can_be_undone_and_done_again(visitor: Visitor) -> None:
     expect(redo).to_have_attribute("aria-disabled", "true")
 
 
+@pytest.mark.parametrize("way", ["header", "address"])
+def test_back_restores_the_form_behind_a_place_that_an_empty_page_does_not_have(visitor: Visitor, way: str) -> None:
+    page = visitor.open("/?T=&n=&t=")
+    if way == "header":
+        page.get_by_role("link", name="Selection", exact=True).click()
+    else:
+        page.evaluate("location.hash = 'overview'")
+    stop = page.get_by_label("Emergency-stop torque")
+    stop.fill("90")
+    stop.press("Tab")
+    expect(page).to_have_url(re.compile("Tk=90"))
+    page.go_back()
+    expect(stop).to_have_value("")
+    expect(page).not_to_have_url(re.compile("Tk=90"))
+    expect(button(page, "Undo")).to_have_attribute("aria-disabled", "true")
+    page.go_forward()
+    expect(stop).to_have_value("90")
+
+
 def test_undo_key_in_a_text_field_stays_the_browsers(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     edit_row(page, 3, "Remove")
     expect(torque(page, 3)).to_have_count(0)
     torque(page, 1).focus()
     page.keyboard.press("Control+z")
-    pause(page).fill("5")  # a later edit has its answer; what the key had asked for would be in it
+    pause(page).fill("5")  # a later edit is answered; the answer would include an effect of the key
     expect(page).to_have_url(re.compile(r"/\?T=40&n=250&t=0\.3&T=32&n=500&t=3&tp=5&"))
     expect(torque(page, 3)).to_have_count(0)
 
@@ -79,7 +98,7 @@ def test_keys_edit_rows_and_are_listed(visitor: Visitor) -> None:
 
 
 def shown(page: Page) -> list[list[str]]:
-    """Texts in the fields of the duty table, row by row."""
+    """Texts in the fields of the duty table, by row."""
     rows = page.locator("#duty tbody").get_by_role("row")
     return [
         [field.input_value() for field in fields] for row in rows.all() if (fields := row.get_by_role("textbox").all())
@@ -195,7 +214,7 @@ def test_rows_edited_on_the_page_are_those_that_the_server_draws(visitor: Visito
     here = page.evaluate(TABLE)
     button(page, "Undo").click()
     expect(page.locator("#duty tbody tr")).to_have_count(here[0].count("<tr") + 1)
-    button(page, "Redo").click()  # brings the form as the server draws it
+    button(page, "Redo").click()  # gets the form from the server
     expect(page.locator("#duty tbody tr")).to_have_count(here[0].count("<tr"))
     assert page.evaluate(TABLE) == here
 

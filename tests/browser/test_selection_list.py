@@ -1,4 +1,4 @@
-"""The list of saved selections: saved from the page, found, renamed, compared and taken up again."""
+"""List of saved selections, which are saved from the page, found, renamed, compared and continued."""
 
 import re
 
@@ -11,7 +11,7 @@ from tests.build import worked_example
 
 
 def saved(server: str, **labels: str) -> str:
-    """Address of a selection that is now saved."""
+    """Address of a newly saved selection."""
     body = {"application": worked_example(), **labels}
     answer = httpx.post(f"{server}/api/v1/selections", json=body, trust_env=False).raise_for_status()
     return str(answer.json()["url"])
@@ -61,7 +61,7 @@ def test_two_are_marked_renamed_and_compared(visitor: Visitor, server: str) -> N
     rows = page.get_by_role("region", name="Saved selections").get_by_role("rowheader")
     expect(rows).to_have_text(["pair two", "pair three"])
     for name in ("pair two", "pair three"):
-        page.get_by_role("checkbox", name=f"Compare {name}").check()
+        page.get_by_role("checkbox", name=f"Mark {name}").check()
     page.get_by_role("button", name="Compare two").click()
 
     expect(page.get_by_role("heading", level=1)).to_have_text("Two selections side by side")
@@ -79,7 +79,7 @@ def test_the_box_of_another_verdict_stands_beside_its_words(visitor: Visitor, wi
 
 SIGN_AND_LIMIT = """cells => cells.map(cell =>
   [...cell.querySelectorAll(".sign, .quantity")].map(part => part.getBoundingClientRect().bottom))"""
-"""Feet of the sign and of the limit in each cell."""
+"""Lower edges of sign and limit in each cell in px."""
 
 
 def test_limits_of_a_saved_selection_stand_beside_their_sign_and_names_of_figures_are_not_cut(

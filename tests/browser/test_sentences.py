@@ -19,7 +19,7 @@ def life(page: Page) -> Locator:
 
 
 def test_address_of_a_refused_field_is_the_one_from_before_it_was_typed_in(visitor: Visitor) -> None:
-    """40.000 is 40, 40.0 and 40.00 on the way: none of them is what somebody wanted to require."""
+    """Typing 40.000 passes 40, 40.0 and 40.00: none of them is the intended value."""
     page = visitor.open(f"{EXAMPLE}&FR=500")
     expect(page).to_have_url(re.compile("FR=500"))
     before = page.url
@@ -110,6 +110,7 @@ def test_saved_page_cuts_no_figure_of_a_phase(visitor: Visitor, width: int) -> N
             in_german(page)
         table = page.locator("table.phases")
         expect(table.get_by_text("620").first).to_be_visible()
+        page.wait_for_load_state()  # its style sheets decide the widths
         box = table.locator("xpath=..")
         assert box.evaluate("box => box.scrollWidth - box.clientWidth") == 0
         cut = table.evaluate(

@@ -1,4 +1,4 @@
-"""Every page by axe with the rules that it leaves out by itself, and what a finger has to hit."""
+"""Every page checked by axe, with rules that it omits by default, and targets for a finger."""
 
 import httpx
 import pytest
@@ -57,13 +57,13 @@ def saved(server: str) -> str:
 
 
 def unfolded(visitor: Visitor, path: str, width: int, *, dark: bool = False, touch: bool = False) -> Page:
-    """A page with everything open that can be."""
+    """Page with everything unfolded."""
     page = visitor.open(path, width, dark=dark, touch=touch)
     if width < 600:
         show_all_sections(page)
     page.evaluate("document.querySelectorAll('details').forEach(part => { part.open = true })")
     page.wait_for_load_state("networkidle")
-    for watch in visitor.watches:  # the browser says of a page that is refused or not found that it is
+    for watch in visitor.watches:  # the browser reports pages that are refused or not found
         watch.console = [text for text in watch.console if "responded with a status of 4" not in text]
     return page
 

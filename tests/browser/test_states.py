@@ -1,4 +1,4 @@
-"""Every state of the pages in turn, in one browser: axe in both themes and in forced colours, and no scroll within."""
+"""Every state of the pages in one browser: axe in both themes and in forced colours, and no inner scroll bars."""
 
 import re
 from collections.abc import Callable
@@ -23,7 +23,7 @@ WIDER = """() => [...document.querySelectorAll('body *')].filter((each) => {
     && (scrolls(overflowX, each.scrollWidth, each.clientWidth)
       || (scrolls(overflowY, each.scrollHeight, each.clientHeight) && !each.matches('#application')));
 }).map((each) => `${each.localName}.${each.className}#${each.id}`)"""
-"""Elements that scroll by themselves, beside the input’s own column, the tabs, the map on a phone and a typed text."""
+"""Elements with their own scroll bar, except the column of inputs, the tabs, the map on a phone and text fields."""
 
 
 def _section(name: str) -> Callable[[Page], None]:
@@ -48,6 +48,7 @@ STATES: dict[str, tuple[str, Callable[[Page], None] | None]] = {
     "bearing without a load": (EXAMPLE, _section("Bearing")),
     "bearing without the shaft's centre": (LACKS_CENTRE, _section("Bearing")),
     "drive": (RAMPS, _section("Drive")),
+    "drive with a motor": (RAMPS + "&nm=6000&Tm=7.2&Tmn=2.2&nmr=3000&Jm=0.0006&Jr=5#drive", None),
     "candidates": (LOADED, _section("Candidates")),
     "compare": (LOADED + "&pin=HPN-14A-5&pin=HPN-32A-5", _section("Compare")),
     "calculation": (LOADED, _section("Calculation")),
@@ -64,7 +65,7 @@ STATES: dict[str, tuple[str, Callable[[Page], None] | None]] = {
     "saved": ("SAVED", None),
 }
 SCROLLS = ("table read",)
-"""A table of as many columns as a stranger pastes."""
+"""States that may scroll: a pasted table can have any number of columns."""
 
 
 @pytest.fixture(scope="module")

@@ -32,7 +32,7 @@ def test_an_axis_that_is_too_soft_is_asked_for_25_hz_and_gets_the_next_gear_with
     expect(verdict(page)).to_contain_text("natural frequency")
     expect(page.get_by_text("the load’s inertia drops to").first).to_be_visible()
 
-    # The same over REST, as a PLM system would ask.
+    # The same over REST, as from a PLM system.
     asked = {"load_inertia_kgm2": 1.2, "natural_frequency_Hz": 25, "ratios": [5]}
     phases = [{"torque_Nm": T, "speed_rpm": 60, "duration_s": 0.5} for T in (40, -40)]
     body = json.dumps({"duty_cycle": {"phases": phases, "pause_s": 1}, "requirements": asked}).encode()

@@ -1,4 +1,4 @@
-"""Tolerances on the page: fields where they are asked for, which go with their rows, and the tab of worst cases."""
+"""Tolerances on the page: fields on request, which move with their rows, and the tab of worst cases."""
 
 import re
 
@@ -11,14 +11,14 @@ LINK = "/?T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200&i=5"
 
 def test_the_tolerance_of_a_row_is_moved_and_removed_with_it(visitor: Visitor) -> None:
     page = visitor.open(LINK)
-    expect(page.get_by_label("Tolerance: Torque, phase 2")).to_have_count(0)  # calm for who doesn’t ask
+    expect(page.get_by_label("Tolerance: Torque, phase 2")).to_have_count(0)  # hidden until requested
     page.get_by_role("button", name="± tolerances").click()
     page.get_by_label("Tolerance: Torque, phase 2").fill("10")
     expect(page).to_have_url(re.compile(r"tol=T\.2:10p"))
 
     page.get_by_label("Torque, phase 2, in Nm", exact=True).focus()
     page.keyboard.press("Alt+ArrowUp")
-    expect(page.get_by_label("Tolerance: Torque, phase 1")).to_have_value("10")
+    expect(page.get_by_label("Tolerance: Torque, phase 1")).to_have_value("10 %")
     expect(page).to_have_url(re.compile(r"T=32&.*tol=T\.1:10p"))
     page.keyboard.press("Alt+Enter")  # a blank row at the end
     page.get_by_label("Torque, phase 2, in Nm", exact=True).focus()

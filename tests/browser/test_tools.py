@@ -26,7 +26,7 @@ PASTE = """([id, text]) => {
   const event = new ClipboardEvent("paste", {clipboardData: data, bubbles: true, cancelable: true});
   return document.getElementById(id).dispatchEvent(event);
 }"""
-"""Pastes as a browser does; true where the page leaves the pasting to the browser."""
+"""Pastes as a browser does; true if the page leaves the pasting to the browser."""
 
 
 def paste(page: Page, text: str, into: str = "T-0") -> bool:
@@ -62,7 +62,7 @@ def test_ambiguous_table_is_asked_about_by_keyboard(visitor: Visitor) -> None:
     expect(button(page, "Replace phases")).to_be_disabled()
     page.keyboard.press("Space")
     expect(page.get_by_role("cell", name="1.234", exact=True)).to_be_visible()
-    expect(point).to_be_focused()  # the answer takes nobody's place away
+    expect(point).to_be_focused()  # the answer does not move the focus
     page.keyboard.press("ArrowDown")
     expect(page.get_by_role("cell", name="1\u202f234", exact=True)).to_be_visible()
     expect(comma).to_be_focused()
@@ -76,7 +76,7 @@ def test_ambiguous_table_is_asked_about_by_keyboard(visitor: Visitor) -> None:
 
 
 def test_choice_made_while_the_answer_to_the_one_before_is_under_way_counts(visitor: Visitor) -> None:
-    """The table is asked for 150 ms after a choice: an answer that came in between showed the choice before it."""
+    """The table is requested 150 ms after a choice: an answer in between showed the previous choice."""
     page = visitor.open(EXAMPLE)
     paste(page, "1.234\t250\t3")
     mark = page.get_by_role("group", name="Which is the decimal mark?")
@@ -106,7 +106,7 @@ def test_columns_that_nobody_knows_are_skipped_by_one_button(visitor: Visitor) -
     button(page, "Skip 3 columns that were not recognised").click()
     expect(page.get_by_text("All phases take 0.5 s.")).to_be_visible()
     expect(page.get_by_label("Quantity of Temp B")).to_have_value("skip")
-    page.get_by_label("Unit of Dauer").select_option("ms")  # what the button said stays said
+    page.get_by_label("Unit of Dauer").select_option("ms")  # the button's choice stays
     expect(page.get_by_text("All phases take 0.0005 s.")).to_be_visible()
     button(page, "Replace phases").click()
     expect(page).to_have_url(re.compile(r"\?T=9&n=1250&t=0\.0003&T=12&n=500&t=0\.0002$"))
@@ -163,7 +163,7 @@ def test_application_leaves_as_a_file_and_comes_back(visitor: Visitor, tmp_path:
 
 def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.open(EXAMPLE, script=False)
-    pause(page).fill("5")  # typed, not calculated yet: it must come along
+    pause(page).fill("5")  # typed, not calculated yet: it must be kept
     button(page, "Paste table").click()
     page.get_by_label("Cells copied from a spreadsheet").fill("1.234;250;3\n2.345;100;1")
     button(page, "Preview").click()
@@ -184,7 +184,7 @@ def test_table_and_file_are_taken_without_script(visitor: Visitor, tmp_path: Pat
 def test_long_wait_is_shown_and_a_short_one_is_not(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
     page.clock.install(time=0)
-    page.clock.pause_at(60)  # from here on it goes by run_for alone, however slow the machine
+    page.clock.pause_at(60)  # from here only run_for advances the clock, even on a slow machine
     result = page.get_by_role("region", name="Result")
     before = page.get_by_role("table", name="Load limits").bounding_box()
     with answer_held_back(page, lambda: pause(page).fill("5")):
@@ -206,7 +206,7 @@ OVERLOADED = """() => {
 
 
 class TestWithoutServer:
-    """The browser complains in its console about what can't be loaded; these tests look after themselves."""
+    """Tests without a server; not watched, as the browser reports failed requests in its console."""
 
     @pytest.fixture
     def page(self, visitor: Visitor) -> Page:
@@ -303,7 +303,7 @@ def test_envelope_of_a_gear_has_its_axes_as_the_plots_of_a_selection(visitor: Vi
     drawing = page.get_by_role("figure", name="Permissible axial load against radial load of HPN-20A")
     radial, axial = (drawing.get_by_text(f"{name} load in N").bounding_box() for name in ("radial", "axial"))
     assert radial and axial
-    assert radial["width"] > radial["height"] and axial["width"] > axial["height"]  # each at the end of its axis
+    assert radial["width"] > radial["height"] and axial["width"] > axial["height"]  # each name at the end of its axis
     assert axial["y"] < radial["y"] and axial["x"] < radial["x"]
     corners = page.get_by_role("table", name="Corner points")
     expect(corners.get_by_role("columnheader")).to_have_text(["fw", "Radial N", "Axial N"])
@@ -332,7 +332,7 @@ def test_table_is_pasted_by_touch_on_a_phone(visitor: Visitor) -> None:
 def test_accessibility_check_finds_nothing_on_the_pages_beside(visitor: Visitor, path: str, width: int) -> None:
     page = visitor.open(path, width=width)
     if "i=3" in path:
-        visitor.watches.clear()  # a filter that leaves nothing is a 404, which Chromium reports
+        visitor.watches.clear()  # Chromium reports the 404 of a filter without gears
     assert page.evaluate("document.documentElement.scrollWidth") == width
     assert violations(page) == []
 

@@ -1,4 +1,4 @@
-"""The journey from a rejected gear by its "Try it" to the same gear, which then passes."""
+"""Journey from a rejected gear by its "Try it" to the same gear, which then passes."""
 
 import random
 

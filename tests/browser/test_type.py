@@ -1,6 +1,6 @@
-"""Type of the pages: five sizes, and one for indices, in drawings too, at whatever width they stand."""
+"""Type of the pages: five sizes and one for subscripts, in drawings, too, at any width."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -24,34 +24,40 @@ USED = """() => {
   }
   return found;
 }"""
-"""Sizes of all letters as they stand on the screen, to a twentieth of a pixel, each with one of its elements."""
+"""Sizes of all letters on the screen, to a twentieth of a pixel, each with one of its elements."""
 
 
 def others(page: Page, sizes: Sequence[float] = SIZES) -> dict[str, str]:
-    """Sizes beside those that there may be."""
+    """Sizes that are not permitted, each with an element."""
     return {
         size: where for size, where in page.evaluate(USED).items() if min(abs(float(size) - one) for one in sizes) > 0.1
     }
 
 
-@pytest.mark.parametrize("width", [390, 1440, 1920])
+def at_each_width(visitor: Visitor, path: str) -> Iterator[Page]:
+    """A page on a phone, on a desk and on a wide screen, as one that is resized."""
+    page = visitor.open(path, 390)
+    for width in (390, 1440, 1920):
+        page.set_viewport_size({"width": width, "height": 900})
+        yield page
+
+
 @pytest.mark.parametrize(
     "path", ["/", LOADED, "/?T=&n=&t=", "/catalogue/HPN-20A-5", "/catalogue", "/selections", "/machines", "/paste"]
 )
-def test_a_page_has_five_sizes_of_letters_and_one_for_indices(visitor: Visitor, path: str, width: int) -> None:
-    page = visitor.open(path, width)
-    if path == LOADED:
-        show_all_sections(page)
-    assert others(page) == {}
+def test_a_page_has_five_sizes_of_letters_and_one_for_indices(visitor: Visitor, path: str) -> None:
+    for page in at_each_width(visitor, path):
+        if path == LOADED:
+            show_all_sections(page)
+        assert others(page) == {}, page.viewport_size
 
 
-@pytest.mark.parametrize("width", [390, 1440, 1920])
-def test_discs_of_all_drawings_have_one_size(visitor: Visitor, width: int) -> None:
-    page = visitor.open(LOADED, width)
-    discs = page.locator("#cycle .disc:visible, #envelope .mark .disc:visible")
-    expect(discs.first).to_be_visible()
-    heights = discs.evaluate_all("all => all.map(disc => disc.getBoundingClientRect().height)")
-    assert max(heights) - min(heights) <= 1.5, heights
+def test_discs_of_all_drawings_have_one_size(visitor: Visitor) -> None:
+    for page in at_each_width(visitor, LOADED):
+        discs = page.locator("#cycle .disc:visible, #envelope .mark .disc:visible")
+        expect(discs.first).to_be_visible()
+        heights = discs.evaluate_all("all => all.map(disc => disc.getBoundingClientRect().height)")
+        assert max(heights) - min(heights) <= 1.5, (page.viewport_size, heights)
 
 
 def test_a_menu_opens_under_its_caret_and_dims_nothing(visitor: Visitor) -> None:

@@ -1,4 +1,4 @@
-"""The workbench: what lies where at each width, what stays in sight, and which sections an edit brings."""
+"""Workbench: positions at each width, parts that stay in sight, and sections that an edit updates."""
 
 import re
 from typing import Any
@@ -22,7 +22,7 @@ STATES = {
     "all gears": EXAMPLE.replace("&i=5", "&FR=500&FA=200"),
 }
 ZOOMED = 720
-"""A window of 1440 at 200 %."""
+"""Width of a window of 1440 px at 200 % zoom."""
 SHORT = {
     *(("seven", 1440, "de"), ("seven", 1920, "en"), ("none fits", 1024, "de")),
     *(("example", ZOOMED, "de"), ("all gears", 390, "de"), ("none fits", 1280, "de"), ("slow", 1440, "de")),
@@ -55,14 +55,14 @@ CLASHES = """() => {
   }
   return found;
 }"""
-"""Pairs of texts that lie over one another, within the same scrolling box."""
+"""Pairs of overlapping texts within the same scrolling box."""
 
 CUT = """() => [...document.querySelectorAll("main svg text")].filter(text => {
   const box = text.getBoundingClientRect(), room = text.ownerSVGElement.getBoundingClientRect();
   const beyond = box.left < room.left - 1 || box.right > room.right + 1;
   return box.width > 0 && (beyond || box.top < room.top - 2 || box.bottom > room.bottom + 2);
 }).map(text => text.textContent)"""
-"""Texts of drawings that reach beyond their drawing."""
+"""Texts that reach beyond their drawing."""
 
 SMALL = """() => [...document.querySelectorAll("main *, header *")].filter(element =>
   [...element.childNodes].some(node => node.nodeType === 3 && node.textContent.trim())
@@ -79,7 +79,7 @@ def read_german(page: Page) -> None:
 
 
 def in_sight(page: Page, *locators: Any) -> list[bool]:
-    """True for each that lies in the window from its first to its last line."""
+    """True for each element that is completely within the window's height."""
     height = page.viewport_size["height"] if page.viewport_size else 0
     boxes = [locator.bounding_box() for locator in locators]
     return [bool(box) and box["y"] >= 0 and box["y"] + box["height"] <= height for box in boxes]
@@ -197,7 +197,7 @@ def test_a_cell_that_is_blanked_leaves_no_result_as_if_it_were_valid(visitor: Vi
         expect(page.locator(f"{place} .waiting")).to_have_text("Still to enter: Speed, phase 2, in rpm")
     shown = [
         page.locator(name) for name in (".tabs", "#jump strong", "#cycle svg", "#overview")
-    ]  # the second is the verdict on a phone
+    ]  # the second is a phone's verdict
     muted = page.evaluate("getComputedStyle(document.querySelector('.hint')).color")
     for part in (*shown, selected(page), page.locator(".largest .percent")):
         expect(part).to_have_css("color", muted)
@@ -205,6 +205,18 @@ def test_a_cell_that_is_blanked_leaves_no_result_as_if_it_were_valid(visitor: Vi
     for part in shown:
         expect(part).not_to_have_css("color", muted)
     expect(selected(page)).not_to_have_css("color", muted)
+
+
+@pytest.mark.parametrize("length", [20_000, 100_000, 1_000_000])
+def test_a_text_too_long_for_an_address_gets_the_message_of_its_field(visitor: Visitor, length: int) -> None:
+    page = visitor.open(EXAMPLE)
+
+    page.get_by_label("Speed, phase 2").fill("9" * length)
+    expect(page.locator("#duty-errors")).to_have_text("Speed, phase 2: is too long for a number")
+    expect(page.locator("#connection").get_by_text("Not calculated")).to_be_hidden()
+
+    page.get_by_label("Speed, phase 2").fill("400")
+    expect(page).to_have_url(re.compile("n=400&"))
 
 
 def test_the_link_is_copied_from_the_bar(visitor: Visitor) -> None:
@@ -332,7 +344,7 @@ FEET = """(cells) => cells.map((cell) => {
   const lines = [...range.getClientRects()].filter(({ height }) => height > 0);
   return Math.min(...lines.map(({ bottom }) => Math.round(bottom)));
 })"""
-"""Foot of the first line of text in each cell."""
+"""Lower edge of the first line of text in each cell in px."""
 
 
 def test_figures_of_a_check_stand_beside_the_first_line_of_its_name(visitor: Visitor) -> None:

@@ -43,7 +43,7 @@ def main(wanted: str) -> int:
 
 def _try_all(running: Engine, images: Images, wanted: str) -> None:
     with stack(running, images, ROOT) as made:
-        print(*images.told(), sep="\n", flush=True)
+        print(*images.lines(), sep="\n", flush=True)
         built = trial.try_one("the image is built", lambda: _build(made))
         if built and trial.try_one("the stack starts and is healthy", lambda: made.up()):
             for kind in KINDS:

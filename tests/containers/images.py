@@ -51,7 +51,7 @@ class Images:
             self.had[name] = name if self._pulled(name) else self._stand_in(name)
         return self.had[name]
 
-    def told(self) -> list[str]:
+    def lines(self) -> list[str]:
         """A line for each image: real, or what stands in for it."""
         return [
             f"{name.partition('@')[0]}: {'real' if have == name else _contents(self.engine, have)}"

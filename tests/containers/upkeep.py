@@ -26,7 +26,7 @@ GRACE_S = 38.0
 
 @trial("a new certificate is served after a reload, and no connection breaks")
 def certificate(stack: Stack) -> str:
-    """How long the old one was served."""
+    """Time for which the old certificate was served."""
     before = _served(stack)
     with stack.client() as client:
         assert client.get("/healthz").status_code == 200
@@ -169,7 +169,7 @@ def address(stack: Stack) -> str:
 
 @trial("a fleet under way ends with web, in time and with nothing left")
 def shutdown(stack: Stack) -> str:
-    """How long the stop took."""
+    """Time of the stop."""
     answers: list[str] = []
 
     def send() -> None:

@@ -23,11 +23,14 @@ REQUIRED = PHASE[:3]
 LISTS = {"requirements.ratios": pa.list_(pa.int64()), "requirements.sizes": pa.list_(pa.string())}
 TEXTS = (
     *("output_load.life_basis", "output_load.model", "output_load.drive.type", "rank_by", "application_area"),
-    *("requirements.motor.designation", "requirements.position_error_at"),
+    *("requirements.motor.designation", "requirements.motor.curve", "requirements.position_error_at"),
 )
 
 CENTRE = "output_load.shaft_centre_mm"
 """A number, or an object by size, which stands as JSON in tables."""
+
+CURVE = "requirements.motor.curve"
+"""Points, which stand as JSON in tables."""
 
 Row = dict[str, Any]
 
@@ -57,7 +60,7 @@ def _flat(part: Json, path: str = "") -> Row:
         if isinstance(value, dict) and f"{path}{name}" != CENTRE:
             row |= _flat(value, f"{path}{name}.")
         else:
-            row[f"{path}{name}"] = value
+            row[f"{path}{name}"] = json.dumps(value) if f"{path}{name}" == CURVE else value
     return row
 
 

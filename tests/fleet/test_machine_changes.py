@@ -129,6 +129,7 @@ def test_somebody_faster_on_the_same_axis_is_shown_and_nothing_is_lost(client: T
     assert kept(client, machine) == theirs and 'value="0.7"' in page.text and "u 60 %" in text_of(page.text)
     again = re.search(r'name="axis"\s+value="(1:2)"[^>]*checked', page.text)
     assert again is not None  # the same axis is marked in the state that is shown
+    assert re.search(r"data-apply\s*>Set for", page.text)  # and there is the button that applies again
     assert send(client, machine, *((n, "1:2" if n == "axis" else v) for n, v in yours)).status_code == 200
     assert kept(client, machine)["axes"][0]["application"]["requirements"] == {"utilisation": 0.7}
 
@@ -145,6 +146,7 @@ def test_two_people_meet_on_one_common_value_alone(client: TestClient, machine: 
     same = send(client, machine, *{**mine, "fw": "1.5"}.items(), ("do", "apply"))
     assert same.status_code == 409 and "somebody else has set 1.4 since" in unescape(same.text)
     assert 'value="1.5"' in same.text and 'value="30000"' in same.text
+    assert re.search(r"data-apply\s*>\s*Apply to", same.text)
     assert kept(client, machine)["common"] == common
 
 
@@ -193,6 +195,26 @@ def test_fewest_kinds_stand_beside_the_machine_as_rest_gives_them(client: TestCl
     assert fewer and all(gear in page for gear in fewer[-1]["gears"])
     assert all(change["to"] in page for change in fewer[-1]["changes"]) and "<svg" in page
     assert f'data-load="{machine}/kinds"' in client.get(machine).text
+
+
+def test_fewest_kinds_name_the_axes_that_the_first_step_changes_already(client: TestClient, machine: str) -> None:
+    """The first step is the lightest set of as many kinds as now, whatever heavier gear an axis has ordered."""
+    client.patch(f"/api/v1{machine}/axes/2", json={"ordering_code": "HPN-32A-5"}).raise_for_status()
+    first = client.get(f"/api/v1{machine}/kinds").json()["kinds"][0]
+    (change,) = first["changes"]
+
+    assert (change["axis"], change["from"]) == (2, "HPN-32A-5")
+    page = text_of(client.get(f"{machine}/kinds").text)
+    assert f"The comparison begins with one axis changed: B: HPN-32A-5 → {change['to']}" in page
+
+
+def test_a_gear_that_many_axes_force_names_three_of_them_and_counts_the_others(client: TestClient) -> None:
+    only = {**BELT, "requirements": {"sizes": ["20A"], "ratios": [5]}}
+    saved = client.post("/api/v1/machines", json={"axes": [{"name": name, "application": only} for name in "ABCDEF"]})
+
+    page = text_of(client.get(f"{saved.json()['url']}/kinds").text)
+
+    assert "HPN-20A-5 is forced by A, B, C and 3 more." in page
 
 
 def test_a_step_of_fewest_kinds_is_taken_as_own_values_and_undone(client: TestClient, machine: str) -> None:

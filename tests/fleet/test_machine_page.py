@@ -80,6 +80,9 @@ def test_rows_show_own_values_quantity_and_gear_and_the_head_counts_gears(client
     shown = re.search(r'Weight, all gears</p>\s*<p class="value">\s*<data class="quantity" value="([^"]*)"', page)
     assert shown is not None and float(shown[1]) == pytest.approx(weight, rel=1e-12)  # a sum in another order
     assert "For every axis Maximum utilisation u 90 %" in text_of(page)
+    assert "% u = 90 %" in text_of(
+        page[page.index('class="cell largest"') :]
+    )  # beside the bar, as the page of an axis has it
     assert "1 axis without a gear" in text_of(page) and "4 gears" in text_of(page)
 
 
@@ -92,6 +95,8 @@ def test_an_axis_that_does_not_hold_over_its_tolerance_says_so_and_is_counted(cl
     assert "not over the whole tolerance" in row(page, "Wide")
     assert "not over the whole tolerance" not in row(page, "Exact")
     assert "1 not over the whole tolerance" in text_of(page) and "2 suitable" in text_of(page)
+    assert re.search(r"Over the tolerance \d+ hold 1 don’t", text_of(page))
+    assert re.search(r"decides; worst case [\d.]+ %", text_of(page))
     (address,) = set(re.findall(r'href="([^"]*show=inside[^"]*)"', page))
     chosen = client.get(address.partition("#")[0]).text
     assert "Don’t hold 1" in text_of(chosen) and len(re.findall(r'id="axis-\d+"', chosen)) == 1
@@ -103,9 +108,23 @@ def test_an_axis_without_a_gear_says_what_would_mend_it_and_an_open_one_what_is_
     page = client.get(machine).text
 
     assert "No gear; nearest HPN-" in row(page, "Pallet lift") and "Fits if torques drop to" in text_of(page)
-    assert "phase 1: is required" in row(page, "Carton erector")
+    assert "Speed of phase 1 is required" in row(page, "Carton erector")
     german = text_of(client.get(machine, headers={"Accept-Language": "de"}).text)
+    assert "Drehzahl der Phase 1 fehlt" in german
     assert "Passt, wenn" in german and "Für alle Achsen" in german
+
+
+def test_what_would_make_a_gear_fit_is_tried_on_the_axis(client: TestClient, machine: str) -> None:
+    """The gear that the row calls nearest then fits, and nothing is changed until the axis is saved."""
+    page = client.get(machine).text
+    nearest = re.search(r"nearest (HPN-[0-9]+A-[0-9]+)", row(page, "Pallet lift"))
+    links = re.findall(r'href="([^"]*)"[^>]*aria-label="Try it: Pallet lift, ', page)
+    assert nearest and links
+
+    for link in links:
+        tried = text_of(client.get(unescape(link)).text)
+        assert nearest[1] in tried and "passes every check" in tried
+    assert client.get(f"/api/v1{machine}/axes/3").json()["application"] == HEAVY
 
 
 def test_an_axis_changed_after_a_revision_is_marked_and_found(client: TestClient, machine: str) -> None:

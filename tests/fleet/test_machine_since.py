@@ -68,6 +68,33 @@ def test_a_common_value_marks_the_axes_whose_answers_it_changes(client: TestClie
     assert re.search("For every axis : Maximum utilisation 0.9 0.2", panel(page)), panel(page)
 
 
+def marks(page: str) -> dict[int, tuple[str, bool]]:
+    """Marks of axes by their numbers: the revision, and whether it is saved."""
+    found = dict[int, tuple[str, bool]]()
+    for number, cells in re.findall(r'id="axis-(\d+)"(.*?)</tr>', page, re.DOTALL):
+        if mark := re.search(r'class="changed"( data-saved)?.*?</svg>(\w*)</span>', cells, re.DOTALL):
+            found[int(number)] = mark[2], bool(mark[1])
+    return found
+
+
+def test_changes_are_shown_since_whichever_revision_is_chosen(client: TestClient, machine: str) -> None:
+    client.patch(f"/api/v1{machine}/axes/1", json={"application": STRONGER})
+    client.post(f"/api/v1{machine}/revisions", json={"label": "B"})
+    client.patch(f"/api/v1{machine}/axes/2", json={"quantity": 2})
+
+    latest, since_a = client.get(machine).text, client.get(f"{machine}?since=a&show=changed").text
+
+    assert marks(latest) == {1: ("B", True), 2: ("C", False)}
+    assert "Changed since revision B" in text_of(latest) and '<option value="B" selected>' in latest
+    assert marks(since_a) == {1: ("B", True), 2: ("C", False)}
+    assert "Changed since revision A" in panel(since_a) and "2 changed" in panel(since_a)
+    assert "show=todo&amp;since=a" in since_a and 'name="since" value="a"' in since_a
+    assert marks(client.get(f"{machine}?show=changed").text) == {2: ("C", False)}
+    assert "2 changed" in panel(client.get(f"{machine}/since?since=A").text)
+    assert panel(client.get(f"{machine}?since=nothing").text) == panel(latest)
+    assert 'aria-label="changed in revision B"' in latest and 'aria-label="changed since revision B"' in latest
+
+
 def test_an_axis_changed_back_is_not_marked(client: TestClient, machine: str) -> None:
     for quantity in (2, 1):
         client.patch(f"/api/v1{machine}/axes/3", json={"quantity": quantity})
@@ -85,7 +112,7 @@ def test_a_large_machine_is_compared_by_itself(
 
     page = client.get(machine).text
 
-    assert f'data-load="{machine}/since"' in page and '<section id="since"' not in page
+    assert f'data-load="{machine}/since?since=A"' in page and '<section id="since"' not in page
     assert 'aria-label="changed since revision A"' in page
     assert panel(client.get(f"{machine}/since").text) == at_once
     fresh = client.post("/api/v1/machines", json={"axes": [{"application": BELT}]}).json()["url"]

@@ -62,10 +62,10 @@ def test_a_machine_shows_each_axis_with_its_link(client: TestClient, machine: st
         g.weight_kg for g in service.state.catalogue.gears if f'<td class="gear">{g.designation}</td>' in page
     )
     assert re.search(rf'Weight, all gears</p>\s*<p class="value">\s*<data class="quantity" value="{weight}">', page)
-    assert re.search(r'Greifer</a>\s*</th>.*?class="reason"[^>]*>[^/]*/span> Torque: row 6: ', page, re.DOTALL)
+    assert re.search(r'Greifer</a>\s*</th>.*?class="reason"[^>]*>[^/]*/span> Torque in row 6 ', page, re.DOTALL)
     german = unescape(client.get(machine, headers={"Accept-Language": "de"}).text)
     assert re.search(
-        r'class="reason"[^>]*>[^/]*/span> Drehmoment: Zeile 6: muss eine Zahl sein, z. B. 9.3, nicht "abc"\s*<', german
+        r'class="reason"[^>]*>[^/]*/span> Drehmoment in Zeile 6 muss eine Zahl sein, z. B. 9.3, nicht "abc"\s*<', german
     )
 
 
@@ -254,7 +254,7 @@ def test_reasons_are_kept_as_codes_and_values(client: TestClient, machine: str, 
     (fault,) = answer_in(saved.items[2].answer).faults
 
     assert (fault.pointer, fault.code) == ("/torque_Nm", "float_type")
-    assert fault.told == Sentence(
+    assert fault.wording == Sentence(
         "row {number}: {reason}",
         {"number": "6", "reason": Sentence("must be a number, such as 9.3, not {found}", {"found": '"abc"'})},
     )

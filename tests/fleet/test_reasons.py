@@ -5,10 +5,11 @@ from typing import Any
 import pytest
 
 from hpn.catalogue import Catalogue
-from hpn.fleet.faults import CellFault, kept, reasons_of
+from hpn.fleet.faults import CellFault, Reason, cell_of, reasons_of
 from hpn.web.axis_tables import drafts_in
 from hpn.web.columns import answer_in
 from hpn.words.reader import Reader
+from hpn.words.wording import Sentence
 from tests.fleet.conftest import Size
 
 SOUND: dict[str, Any] = {"torque_Nm": [40.0, 20.0], "speed_rpm": [250.0, 100.0], "duration_s": [0.5, 3.0]}
@@ -57,7 +58,7 @@ def test_every_reason_has_a_german_text(catalogue: Catalogue) -> None:
         faults = answer_in(draft.answer).faults
         assert faults and draft.answer["status"] == "open", draft
         for fault in faults:
-            assert Reader("de").told(fault.told) != fault.told.text
+            assert Reader("de").sentence(fault.wording) != fault.wording.text
             assert fault.code
 
 
@@ -77,7 +78,7 @@ def assert_told(row: dict[str, Any]) -> None:
     reasons = reasons_of(row["faults"])
     assert "; ".join(f"{reason.column}: {reason.sentence.text}" for reason in reasons) == row["error"]
     for reason in reasons:
-        assert Reader("de").told(reason.sentence) != reason.sentence.text
+        assert Reader("de").sentence(reason.sentence) != reason.sentence.text
         assert reason.code
 
 
@@ -94,10 +95,10 @@ def test_a_reason_is_kept_with_its_values(catalogue: Catalogue) -> None:
     (draft,) = drafts_in([wrong], (), {"a": (7, 9)}, catalogue)
     (fault,) = answer_in(draft.answer).faults
 
-    assert fault.told.text == 'row 9: must be a number, such as 9.3, not "x;n: 5"'
-    assert Reader("de").told(fault.told) == 'Zeile 9: muss eine Zahl sein, z. B. 9.3, nicht "x;n: 5"'
-    (reason,) = reasons_of(kept([CellFault(0, "speed_rpm", fault.told, fault.code)]))
-    assert reason.sentence == fault.told
+    assert fault.wording.text == 'row 9: must be a number, such as 9.3, not "x;n: 5"'
+    assert Reader("de").sentence(fault.wording) == 'Zeile 9: muss eine Zahl sein, z. B. 9.3, nicht "x;n: 5"'
+    (reason,) = reasons_of(cell_of([CellFault(0, "speed_rpm", fault.wording, fault.code)]))
+    assert reason.sentence == fault.wording
 
 
 @pytest.mark.parametrize("bad", [2.5, float("nan"), 1e300, None])
@@ -105,3 +106,28 @@ def test_one_bad_axis_decides_nothing_for_the_others(bad: Any, size: Size) -> No
     answers = size([{"axis": axis, **SOUND} for axis in (bad, 1.0, 2.0, bad)])
 
     assert [row["axis"] for row in answers if not row["error"]] == [1, 2]
+
+
+OF_PHASE = Sentence("phase {number}: {reason}", {"number": "2", "reason": Sentence("is required")})
+
+
+@pytest.mark.parametrize(
+    ("reason", "english", "german"),
+    [
+        (Reason("speed_rpm", "missing", OF_PHASE), "Speed of phase 2 is required", "Drehzahl der Phase 2 fehlt"),
+        (Reason("pause_s", "missing", Sentence("is required")), "Pause is required", "Pause fehlt"),
+        (
+            Reason(
+                "x",
+                "mechanism",
+                Sentence("item {number}: {reason}", {"number": "1", "reason": Sentence("is required")}),
+            ),
+            "x: item 1: is required",
+            "x: Eintrag 1: fehlt",
+        ),
+    ],
+)
+def test_a_reason_with_the_name_of_its_input_is_a_sentence(reason: Reason, english: str, german: str) -> None:
+    name = {"speed_rpm": "Speed", "pause_s": "Pause"}.get(reason.column, reason.column)
+    assert [Reader(language).sentence(reason.named(name)) for language in ("en", "de")] == [english, german]
+    assert Reader("de").sentence(reason.named("")) == Reader("de").sentence(reason.sentence)

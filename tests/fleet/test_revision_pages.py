@@ -48,6 +48,28 @@ def test_the_comparison_has_the_cells_and_figures_that_rest_gives(client: TestCl
         assert link.replace("&", "&amp;") in page and client.get(link).status_code == 200
 
 
+def test_a_common_value_that_differs_counts_once_and_for_every_axis(client: TestClient, machine: str) -> None:
+    client.patch(f"/api/v1{machine}", json={"common": {"requirements": {"utilisation": 0.77}}}).raise_for_status()
+
+    assert "1 cell on 0 of 4 axes, one for every axis" in text_of(client.get(f"{machine}/revisions").text)
+
+
+def test_results_of_an_axis_stand_under_result(client: TestClient, machine: str) -> None:
+    def head(page: str) -> str:
+        return re.search(r'<span class="cell-row">\s*<span>(.*?)</span>', page)[1]  # type: ignore[index]
+
+    common = {"tolerances": {"torque_Nm": {"percent": 5}}}
+    client.patch(f"/api/v1{machine}", json={"common": common}).raise_for_status()
+    results = client.get(f"{machine}/revisions?from=A&to=now").text
+    assert head(results) == "Result" and "Utilisation in the worst case" in row(results, "Infeed belt")
+    heavier(client, machine)
+    both = client.get(f"{machine}/revisions?from=A&to=now").text
+
+    assert head(both) == "Input or result"
+    assert "Result Utilisation in the worst case – " in row(both, "Press ram")
+    assert "Torque, phase 1 21 Nm 42 Nm" in row(both, "Infeed belt") and "Result" not in row(both, "Infeed belt")
+
+
 def test_the_head_of_a_comparison_says_the_largest_utilisation_as_its_axis_does(client: TestClient) -> None:
     """Of T_k = 204.5 Nm on HPN-20A-5 that is 204.5 / 256, which rounds to the user's u and is below it."""
     stop = worked_example(emergency_stop={"torque_Nm": 204.5}, requirements={"ratios": [5]})

@@ -46,7 +46,7 @@ def keep(client: TestClient, service: FastAPI, draft: MachineDraft) -> str:
 
 def test_a_machine_is_saved_listed_and_never_changed(client: TestClient, service: FastAPI, kept: MachineDraft) -> None:
     address = keep(client, service, kept)
-    assert "Save as a project" in client.get(address).text
+    assert "Save machine" in client.get(address).text
 
     wrong = client.post(address, data={"title": "x" * 300, "ref": "P-7"})
     assert wrong.status_code == 422 and 'value="P-7"' in wrong.text and "at most 200" in unescape(wrong.text)
@@ -54,7 +54,7 @@ def test_a_machine_is_saved_listed_and_never_changed(client: TestClient, service
     client.post(address, data={"title": "another"})
 
     page = client.get(address).text
-    assert "Line &lt;4&gt;" in page and "Save as a project" not in page and "Differences today" not in page
+    assert "Line &lt;4&gt;" in page and "Save machine" not in page and "Differences today" not in page
     assert f'<a href="{address}">Line &lt;4&gt;</a>' in client.get("/machines").text
     assert client.post(f"{address}/delete").status_code == 303
     assert client.get(address).status_code == 404

@@ -54,6 +54,12 @@ OFF_CENTRE = {
 }
 
 MOTOR = {"inertia_kgm2": 1e-4, "inertia_ratio": 5, "rated_speed_rpm": 3000}
+POINTS = [
+    {"speed_rpm": 0, "continuous_Nm": 2.8, "peak_Nm": 7.2},
+    {"speed_rpm": 3000, "continuous_Nm": 2.4, "peak_Nm": 7.2},
+    {"speed_rpm": 6000, "continuous_Nm": 1.5, "peak_Nm": 3},
+]
+CURVED = {"curve": POINTS, "stall_torque_Nm": 2.8, "weight_kg": 2.1, "name": "S60", "inertia_kgm2": 1e-4}
 INERTIAS = {"load_inertia_kgm2": 0.2, "motor": MOTOR}
 
 APPLICATIONS: tuple[Json, ...] = (
@@ -75,6 +81,8 @@ APPLICATIONS: tuple[Json, ...] = (
         requirements=INERTIAS | {"position_error_at": "rest", "rest_friction_Nm": 2.5},
     ),
     {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}, "requirements": {"motor": MOTOR}},
+    {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}, "requirements": {"motor": CURVED}},
+    cycle(phase(20, 250), phase(5, 0), requirements={"motor": CURVED}),
     {"duty_cycle": {"motion": LIFTING}, "rank_by": "motor_torque"},
     worked_example(
         requirements={"worst_case_utilisation": 0.9, "over_tolerance": True},
@@ -111,6 +119,7 @@ FORMS = (
     b"phases=40+250+0.3%0A32+500+3%0A20%09250%090.4&tp=4&Tk=200&i=5",
     b"phases=1%3B2%3B3%3B4%3B5&written=de.lb_in.lbf&was=Nm%3A40+N%3A1.5&Tk=200%2C5&gear=HPN-20A-5&pin=HPN-14A-5",
     LINKS[7] + b"&do=varying",
+    b"T=40&n=250&t=1&written=de&mcv=0+:+2,8+:+7%0D%0A3000:2:5&Tst=3&mmo=2&mnm=S60",
     LINKS[8] + b"&written=de.lb_in&do=add",
     b"T=354%2C03&n=250&t=0%2C3&written=de.lb_in&was=Nm%3A40&FR=1.234%2C5&gear=HPN-14A-5&pin=HPN-20A-5&unpin=HPN-20A-5",
 )
@@ -118,6 +127,7 @@ MOTORS = (
     {"designation": "M 40", "maximum_speed_rpm": 6000, "rated_speed_rpm": 3000, "rated_torque_Nm": 2.4},
     {"designation": "M 60", "rated_torque_Nm": 9, "peak_torque_Nm": 27, "inertia_kgm2": 1e-3, "weight_kg": 4.2},
     {"designation": "M 80", "stall_torque_Nm": 30.5, "peak_torque_Nm": 90, "inertia_kgm2": 1e-2},
+    {"designation": "M 90", "curve": POINTS, "inertia_kgm2": 1e-4},
 )
 PAIRED = (
     {"application": cycle(phase(40, 250), requirements=INERTIAS | {"motor": {"inertia_ratio": 5}})},

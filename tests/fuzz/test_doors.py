@@ -1,6 +1,6 @@
 """Broken inputs through every door: never a server error, none over a second of processor time.
 
-How many each door gets in `make soak` is `HPN_TEST_FUZZ_INPUTS`, by default 200,000.
+In `make soak` each door gets `HPN_TEST_FUZZ_INPUTS` of them, 200,000 by default.
 """
 
 import os

@@ -133,15 +133,18 @@ def test_pages_and_json_open_without_any_one_field(
 
 @pytest.mark.parametrize("name", NAMES)
 def test_files_are_made_without_any_one_field(name: str, soak: bool) -> None:
+    """The report's content and the workbook without each, the package, which sets the report, without some."""
     reply = reply_of(name)
-    for missing in PLACES[name] if soak or name == "brake" else PLACES[name][::12]:
+    for number, missing in enumerate(PLACES[name] if soak or name == "brake" else PLACES[name][::12]):
         lacking = msgspec.json.encode(without(reply, missing))
         if missing in NEEDED:
             with pytest.raises(UnreadableReplyError, match="can’t be read"):
                 decode(lacking)
             continue
         export = export_of(name, lacking)
-        assert content(export, Reader("de")) and workbook(export, Reader()) and package(export)
+        assert content(export, Reader("de")) and workbook(export, Reader())
+        if soak or number % 4 == 0:
+            assert package(export)
         if missing[-1] in FIGURES:
             derived = [row["label"] for row in content(export, Reader())["derived"]]
             assert CANDIDATE[missing[-1]].name not in map(str, derived)

@@ -10,7 +10,9 @@ from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
+from tests.databases import PostgreSQL
 from tests.operations.service import Service, serving
+from tests.operations.stack import Stack, stacked
 
 MakeClient = Callable[..., TestClient]
 
@@ -39,3 +41,10 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """A service with one process and the settings as shipped."""
     with serving(tmp_path_factory.mktemp("service")) as running:
         yield running
+
+
+@pytest.fixture
+def stack(postgresql: PostgreSQL, tmp_path: Path) -> Iterator[Stack]:
+    """A stack with an empty database."""
+    with stacked(postgresql, tmp_path) as stack:
+        yield stack

@@ -31,7 +31,7 @@ class Image:
     skipped: list[str] = field(default_factory=list)
 
     def place(self, path: str) -> Path:
-        """Where a path of the image is on this machine."""
+        """Place of a path of the image on this machine."""
         return self.root / os.path.join(self.folder, path).lstrip("/")
 
     def command(self, instruction: str) -> list[str]:

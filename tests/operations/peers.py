@@ -53,7 +53,7 @@ def resets(count: int) -> bytes:
 
 @dataclass(frozen=True)
 class Peer:
-    """How a peer behaves: what it sends at once, what again and again, whether it reads, and how it ends."""
+    """Behaviour of a peer: bytes sent at once and repeated, reading or not, and its end."""
 
     name: str
     sent: bytes = b""
@@ -116,7 +116,7 @@ class Crowd:
 
     @property
     def left(self) -> int:
-        """How many are still connected."""
+        """Number of peers still connected."""
         return len(self._selector.get_map() or ())
 
     def stop(self) -> None:

@@ -158,7 +158,7 @@ def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 
 def admitted(service: Service, attempts: Iterable[tuple[str, str, tuple[str, ...]]]) -> tuple[int, list[object]]:
-    """How many attempts were made, and those that got further than the gate, by answer or by the log."""
+    """Number of attempts, and those that got further than the gate, by answer or by the log."""
     allowed = {0, 307, 308, 400, 401, 404, 405, 414, 431}
     before, count = len(service.events()), 0
     found: list[object] = []

@@ -68,6 +68,38 @@ def test_a_guarded_group_needs_a_key_and_any_other_does_not(group: str, guarded:
     assert wrong.status_code == 401  # on an open route, too: whoever sends a key means it
 
 
+MOTORS = [{"designation": "M-1", "rated_torque_Nm": 1.3, "rated_speed_rpm": 3000}]
+CYCLE = "T=40&n=250&t=0.3"
+
+
+def test_no_page_shows_saved_data_that_the_key_of_another_group_guards(guarding: Guarding) -> None:
+    """Pages that calculate with a saved list, axis or selection need the key of `reading`, too."""
+    client, key = guarding("reading")
+    own = {"X-API-Key": key}
+    machine = client.post("/api/v1/machines", json={"axes": [{"application": worked_example()}]}, headers=own).json()
+    motors = client.post("/api/v1/motor-lists", json={"name": "Ours", "motors": MOTORS}, headers=own).json()
+    selection = client.post("/api/v1/selections", json=SAVE, headers=own).json()
+    pairs = {"application": worked_example(), "list": motors["id"]}
+    marked = {"new": "selections", "id": selection["id"]}
+
+    for headers, status in (({}, {401}), (own, {200, 303})):
+        answers = [
+            client.get(f"/pairs?{CYCLE}&list={motors['id']}", headers=headers),
+            client.post("/api/v1/pairs", json=pairs, headers=headers),
+            client.get(f"/machines/{machine['id']}/axes/1", headers=headers),
+            client.post("/machines", data=marked, headers=headers, follow_redirects=False),
+        ]
+        assert {answer.status_code for answer in answers} <= status, [answer.text for answer in answers]
+
+
+def test_the_page_of_pairs_names_no_list_of_motors_that_only_a_key_may_list(guarding: Guarding) -> None:
+    client, key = guarding("listing")
+    client.post("/api/v1/motor-lists", json={"name": "Prototype drive", "motors": MOTORS}).raise_for_status()
+
+    assert "Prototype drive" not in client.get(f"/pairs?{CYCLE}").text
+    assert "Prototype drive" in client.get(f"/pairs?{CYCLE}", headers={"X-API-Key": key}).text
+
+
 SPELLINGS = (
     "{path}%0a",
     "{path}%0A",
@@ -249,8 +281,8 @@ def test_every_route_belongs_to_the_group_that_its_method_and_address_suggest() 
             assert group == "batch"
         elif path.removeprefix("/api/v1") in LISTS and method == "GET":
             assert group == "listing"
-        elif path == "/machines/{id}/axes/{number}":  # the workbench on an axis
-            assert group == "calculator"
+        elif path == "/machines/{id}/axes/{number}":  # the workbench on an axis, which a form may be posted to
+            assert group == "reading"
         elif "/selections" in path or "/machines" in path or "/motor-lists" in path:
             expected = {"GET": "reading", "POST": "writing"} | dict.fromkeys(("PUT", "PATCH", "DELETE"), "deleting")
             sent_to = ("/rename", "/delete", *(("/change", "/save", "/axes", "/revisions") if method == "POST" else ()))

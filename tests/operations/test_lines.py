@@ -139,7 +139,7 @@ def test_a_line_too_long_ends_at_its_own_end(size: int) -> None:
 
     assert [item and item.line for item in items] == [1, 2, None, 4]
     status = 400 if size == 8 else 413
-    refused = [item.asked for item in items if item]
+    refused = [item.content for item in items if item]
     assert [isinstance(one, Problem) and one.status_code for one in refused] == [status, 422, status]
 
 
@@ -152,7 +152,7 @@ def test_twenty_times_the_lines_take_no_more_memory_on_either_side(service: Serv
     assert many[1] - few[1] < 2
 
 
-@pytest.mark.parametrize("front", ["alone", "nginx"])
+@pytest.mark.parametrize("front", [pytest.param("alone", marks=pytest.mark.soak), "nginx"])
 def test_a_client_that_sends_all_before_it_reads_gets_all(front: str, service: Service, soak: bool) -> None:
     count = 300_000 if soak else 50_000  # of either, answers and lines are more than sockets hold
     with proxied(service.port) as proxy:

@@ -33,6 +33,14 @@ def test_run_listens_where_make_or_the_settings_say(environment: dict[str, str],
     assert address in planned("run", **environment)
 
 
+def test_a_plain_users_path_leads_to_the_installed_proxy() -> None:
+    looking = ["make", "--eval", "found:;@command -v nginx", "found"]
+
+    found = subprocess.run(looking, cwd=ROOT, env={"PATH": "/usr/bin:/bin"}, check=False)
+
+    assert found.returncode == 0
+
+
 PYTEST = """#!/bin/sh
 echo "$*" >> "$0.calls"
 case "$*" in tests/browser/test_lighthouse.py|"--soak tests/browser/test_lighthouse.py") exit 0 ;; esac

@@ -89,7 +89,7 @@ def test_a_wheel_holds_catalogue_templates_and_assets_as_they_stand_in_the_check
     assert {path.relative_to(ROOT).as_posix() for path in (ROOT / "catalogue").glob("*.csv")} <= found.keys()
     assert {path.relative_to(ROOT).as_posix() for path in (ROOT / "frontend/templates").iterdir()} <= found.keys()
     for name in json.loads((ROOT / "frontend/dist/manifest.json").read_text()).values():
-        assert f"frontend/dist/{name}" in found
+        assert [form for form in ("", ".br", ".gz") if f"frontend/dist/{name}{form}" in found] in ([""], [".br"])
     fonts = {name.removeprefix("frontend/dist/paper/") for name in found if name.startswith("frontend/dist/paper/")}
     scripts = {name.removesuffix(".ttf") for name in fonts if name.endswith(".ttf")}
     assert {"HPNSans", "HPNSans-Bold", "HPNSans-Italic", "NotoSans", "NotoSansSC", "NotoSansKR", "NotoEmoji"} <= scripts
@@ -166,6 +166,20 @@ def test_a_command_without_its_extra_names_it(bare: Installed, wheel: Path, word
 
     assert answer.returncode == 2
     assert answer.stderr == f"hpn {words[0]}: {missing(extra, wheel)}\n"
+
+
+def test_verify_reads_what_it_can_without_any_extra_and_names_what_it_lacks(bare: Installed, wheel: Path) -> None:
+    (bare.elsewhere / "application.json").write_text(json.dumps(worked_example()))
+    answered = bare.run("select", "application.json", "--json").stdout
+    (bare.elsewhere / "answer.json").write_text(answered)
+    (bare.elsewhere / "saved.json").write_text(
+        json.dumps({"application": worked_example(), "result": json.loads(answered)})
+    )
+
+    of_answer, of_saved = bare.run("verify", "answer.json"), bare.run("verify", "saved.json")
+
+    assert (of_answer.returncode, of_answer.stderr) == (2, f"hpn verify: {missing('serve', wheel)}\n")
+    assert (of_saved.returncode, of_saved.stderr) == (0, "")
 
 
 def test_a_fleet_is_sized_and_reported(whole: Installed) -> None:

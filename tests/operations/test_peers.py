@@ -55,7 +55,7 @@ class Front:
     def ask(self, count: int) -> list[float]:
         """Seconds that a second client waits for each of some small calculations, each on a connection of its own.
 
-        Where it is told that there is too much to do, it asks again, and that counts.
+        It asks again where the service is busy, and that counts.
         """
         url = self.proxy.url if self.proxy else self.service.url
         verify = self.proxy.trust() if self.proxy else False

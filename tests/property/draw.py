@@ -7,6 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from tests.build import Json, cycle, phase
+from tests.property.motors import curve_at_random
 
 RANKS = ("weight", "utilisation", "length", "motor_torque", "life", "stiffness", "position_error")
 
@@ -14,18 +15,21 @@ signs = st.sampled_from([-1.0, 1.0])
 torques = st.one_of(st.just(0.0), st.sampled_from([9.0, 26.0, 80.0, 149.0, 256.0]), st.floats(0.01, 400))
 speeds = st.one_of(st.sampled_from([100.0, 120.0, 600.0, 1200.0]), st.floats(0.1, 1500))
 durations = st.floats(0.01, 100)
+seeds = st.integers(0, 2**32)
 loads = st.one_of(st.just(0.0), st.floats(0.1, 5000))
 NAMES = ("lift", "1.0", "2e+05", "Rück & ab; =?#%", "T_av", '"a", b', "=1+1")
 """Names of phases and moves, of which some look like a figure, or like something that means more in a file."""
 
 
-def _wishes() -> st.SearchStrategy[Json]:
+def _wishes(curves: bool) -> st.SearchStrategy[Json]:
+    curve = st.builds(lambda seed, last: curve_at_random(random.Random(seed), last), seeds, st.floats(500, 1e4))
     motor = st.fixed_dictionaries(
         {},
         optional={
             "maximum_speed_rpm": st.floats(100, 10000),
             "peak_torque_Nm": st.floats(0.1, 100),
             "rated_torque_Nm": st.floats(0.1, 100),
+            **({"curve": curve} if curves else {}),
         },
     )
     return st.fixed_dictionaries(
@@ -45,8 +49,8 @@ def _wishes() -> st.SearchStrategy[Json]:
 
 
 @st.composite
-def applications(draw: st.DrawFn, wishes: bool = True) -> Json:
-    """A valid application with any of its parts."""
+def applications(draw: st.DrawFn, wishes: bool = True, curves: bool = True) -> Json:
+    """A valid application with any of its parts; with `curves` also torque curves of motors."""
     phases = [
         phase(draw(signs) * draw(torques), draw(signs) * (draw(speeds) if k == 0 else draw(st.just(0.0) | speeds)), t)
         for k, t in enumerate(draw(st.lists(durations, min_size=1, max_size=6)))
@@ -67,7 +71,7 @@ def applications(draw: st.DrawFn, wishes: bool = True) -> Json:
             "model": draw(st.sampled_from(["linear", "iso281"])),
         }
     if wishes:
-        parts["requirements"] = draw(_wishes())
+        parts["requirements"] = draw(_wishes(curves))
     return cycle(*phases, pause_s=draw(st.just(0.0) | st.floats(0, 100)), **parts)
 
 
@@ -189,7 +193,17 @@ def at_random(chance: random.Random, models: Sequence[str] = ("linear", "iso281"
     pause_s = some(0, 20, 0) if maybe() else 0.0
     if maybe(0.3):
         phases = [entry | ({"name": chance.choice(NAMES)} if maybe(0.7) else {}) for entry in phases]
-    return _with_centres(_with_drive(_with_rest(cycle(*phases, pause_s=pause_s, **parts))))
+    return _with_curve(_with_centres(_with_drive(_with_rest(cycle(*phases, pause_s=pause_s, **parts)))))
+
+
+def _with_curve(application: Json) -> Json:
+    """The application with a torque curve of its motor in one of three, by chance of its own likewise."""
+    chance, motor = random.Random(f"curve of {application!r}"), application.get("requirements", {}).get("motor")
+    if motor is not None and chance.random() < 1 / 3:
+        motor["curve"] = curve_at_random(chance, chance.choice([3000.0, 6000.0, chance.uniform(500, 12000)]))
+        if chance.random() < 1 / 3:
+            motor["stall_torque_Nm"] = motor["curve"][0]["continuous_Nm"] * chance.choice([1.0, 1.2])
+    return application
 
 
 def _with_centres(application: Json) -> Json:

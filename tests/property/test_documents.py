@@ -13,7 +13,7 @@ from hpn.application import Application
 from hpn.catalogue import load_catalogue
 from hpn.documents.answers import AxisQuestion, answer_of, answers
 from hpn.documents.common import COMMON, Common
-from hpn.documents.gears import Placed, gears_of
+from hpn.documents.gears import OrderAxis, gears_of
 from hpn.documents.merge import resolve
 from hpn.engine.selection import select
 from tests.build import Json
@@ -146,7 +146,7 @@ def test_own_and_common_values_merge_as_the_contract_says(own: Json, common: Jso
     try:
         application = Application.model_validate(whole)
     except ValidationError as error:
-        # An own value that lacks something is the axis's fault. What is found first may hide a common one that lacks.
+        # An own value that lacks something is the axis's fault. The first fault may hide a common one that lacks.
         assert found.application is None
         assert {code for _, _, code in found.faults} == {entry["type"] for entry in error.errors()}
         return
@@ -197,7 +197,7 @@ def test_axes_together_are_answered_as_each_alone(owns: list[Json], common: Json
     )
 )
 def test_the_gear_list_counts_every_axis_with_a_gear_once(rows: list[tuple[int, str | None, str | None]]) -> None:
-    found = gears_of((Placed(number, *row) for number, row in enumerate(rows, 1)), CATALOGUE)
+    found = gears_of((OrderAxis(number, *row) for number, row in enumerate(rows, 1)), CATALOGUE)
 
     by_hand: Counter[str] = Counter()
     for quantity, code, selected in rows:

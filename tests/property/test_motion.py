@@ -14,9 +14,9 @@ from hpn.application import Application
 from hpn.application.faults import pointer
 from hpn.catalogue import load_catalogue
 from hpn.engine.duty import Duty
-from hpn.physics.motion.course import course_along, course_of
+from hpn.physics.motion.course import course_along, course_of, courses_along
 from hpn.physics.motion.pieces import pieces_of
-from hpn.physics.motion.torque import Torque, cut, integral
+from hpn.physics.motion.torque import cut, integral, torque_at
 from hpn.web.door.problems import Problem
 from tests.build import Json, answer
 from tests.property.draw import linear_motions, motions, rotary_motions, signs
@@ -128,9 +128,8 @@ def test_over_a_closed_cycle_the_energy_is_what_friction_takes(
     assert moving is not None
     load = moving.mechanism.load
     pieces = course_along(pieces_of(moving.moves, 90 * start, load), load).pieces
-    torque = Torque(load.viscous_Nms, load.gravity_Nm)
 
-    energy = integral(lambda p, t: torque.at(p, t) * p.speed_at(t), pieces).sum()
+    energy = integral(lambda p, t: torque_at(p, t) * p.speed_at(t), pieces).sum()
     V, way = 1.5 * math.radians(angle) / time, 2 * math.radians(angle)
     expected = dry * way + viscous * 30 / math.pi * 2 * V**2 * time * (1 / 3 + 2 / 9)
 
@@ -261,6 +260,53 @@ def test_a_field_of_another_mechanism_or_its_moves_is_refused(motion: Json, data
     pointers = {error["pointer"] for error in refusals(body)}
     above = {"mechanism": "/mechanism", "moves": "/moves/0", "": ""}[place]
     assert f"/duty_cycle/motion{above}/{name}" in pointers
+
+
+@given(st.lists(motions(), min_size=2, max_size=4))
+def test_courses_that_are_computed_together_are_those_of_each_motion_alone(several: list[Json]) -> None:
+    """To 1e-11: an instant at which the torque changes its sign is searched for until all of them are found."""
+    moving = [application_of(motion).duty_cycle.motion for motion in several]
+    parts = [(pieces_of(*one.driven), one.mechanism.load) for one in moving if one]
+    for together, (pieces, load) in zip(courses_along(parts), parts, strict=True):
+        alone = course_along(pieces, load)
+        assert (together.move == alone.move).all() and (together.phase == alone.phase).all()
+        for name in ("duration_s", "torque_Nm", "speed_rpm", "peak_torque_Nm", "rms_torque_Nm", "square_acceleration"):
+            expected = getattr(alone, name)
+            room = 1e-11 * np.abs(expected).max()
+            assert np.allclose(getattr(together, name), expected, rtol=0, atol=room), name
+
+
+@given(motions(), st.lists(st.floats(0.9, 1.1), min_size=1, max_size=3))
+def test_a_changed_motion_is_the_one_that_is_typed_so_or_refused_like_it(motion: Json, factors: list[float]) -> None:
+    """Two ways: changed with others at once, and each validated by itself as it is typed."""
+    moving = application_of(motion).duty_cycle.motion
+    name = "inertia_kgm2" if "inertia_kgm2" in motion["mechanism"] else "mass_kg"
+    assert moving is not None
+    times = [place for place, move in enumerate(motion["moves"]) if move.get("time_s")]
+    assume(times)  # moves may all be given by speed and acceleration
+    timed = times[0]
+
+    def at(factor: float) -> dict[tuple[str | int, ...], float]:
+        of_load, of_move = motion["mechanism"][name] * factor, motion["moves"][timed]["time_s"] * factor
+        return {("mechanism", name): of_load, ("moves", timed, "time_s"): of_move}
+
+    def typed(factor: float) -> Any:
+        body = copy.deepcopy(motion)
+        body["mechanism"][name], body["moves"][timed]["time_s"] = at(factor).values()
+        return type(moving).model_validate(body)
+
+    try:
+        expected = [typed(factor) for factor in factors]
+    except ValidationError:
+        with pytest.raises(ValidationError):
+            moving.changed([at(factor) for factor in factors])
+        return
+    changed = moving.changed([at(factor) for factor in factors])
+    assert changed == expected
+    for one, other in zip(changed, expected, strict=True):
+        for figure in ("torque_Nm", "speed_rpm", "duration_s"):
+            course = getattr(other.course, figure)
+            assert np.allclose(getattr(one.course, figure), course, rtol=0, atol=1e-11 * np.abs(course).max())
 
 
 @given(motions(), motions())

@@ -32,7 +32,7 @@ def evaluation_of(chance: np.random.Generator, rank_by: NDArray[Any]) -> Evaluat
     )
     ranked = ("life_L10_h", "shortest_life_h", "motor_peak_torque_Nm", "natural_frequency_Hz", "position_error_arcmin")
     figures = SimpleNamespace(**{name: drawn(chance, axes, GEARS) for name in ranked})
-    case = SimpleNamespace(gears=gears, figures=figures, asked=SimpleNamespace(rank_by=rank_by))
+    case = SimpleNamespace(gears=gears, figures=figures, inputs=SimpleNamespace(rank_by=rank_by))
     none = cast(Any, None)
     return Evaluation(cast(Any, case), none, none, (), none, none, none, verdict, utilisation)
 

@@ -88,7 +88,7 @@ numbers = st.builds(lambda digits, places: Decimal(digits).scaleb(-places), st.i
 
 @dataclass(frozen=True)
 class Writing:
-    """How a cycle is written."""
+    """Notation of a cycle: locale, separators and units."""
 
     locale: str
     separator: str

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.engine import corners
-from hpn.engine.box import Box
+from hpn.engine.box import Box, duty_of
 from hpn.engine.check import Check, Dependence
 from hpn.engine.checks import CHECKS
 from hpn.engine.corners import Need
@@ -109,6 +109,53 @@ def test_no_point_of_a_box_is_worse_than_its_corner(catalogue: Catalogue, soak: 
         seen |= judged
         assert attained(application, catalogue) <= ABOVE, (number, document)
     assert seen >= {check.code for check in CHECKS}
+
+
+VARYING: tuple[Json, ...] = (
+    MOTIONS[0]
+    | {
+        "requirements": {"motor": {"inertia_kgm2": 5e-4, "peak_torque_Nm": 40, "rated_torque_Nm": 15}},
+        "tolerances": {
+            "motion.moves.0.time_s": {"percent": 5},
+            "motion.moves.2.angle_deg": {"percent": 2},
+            "pause_s": {"percent": 10},
+            "requirements.efficiency": {"minus": {"percent": 5}},
+        },
+    },
+    MOTIONS[1]
+    | {
+        "output_load": {"radial_N": 300, "axial_N": 100, "load_coefficient": 1.2},
+        "tolerances": {
+            "motion.moves.0.distance_mm": {"percent": 5},
+            "motion.mechanism.mass_kg": {"percent": 10},
+            "output_load.radial_N": {"percent": 30},
+        },
+    },
+)
+"""Motions whose times or ways vary, so that they are sampled."""
+
+
+@pytest.mark.parametrize("document", VARYING, ids=["turning", "lifting"])
+def test_samples_that_are_judged_together_are_those_judged_one_by_one(document: Json, catalogue: Catalogue) -> None:
+    """Two ways: rows of one duty, their motions changed at once; and each an application as one would type it."""
+    asked = {"efficiency": 0.95, **document.get("requirements", {}), "sizes": ["20A", "32A"]}
+    application = Application.model_validate(document | {"requirements": asked})
+    base = judge(application, catalogue).evaluation
+    members = members_of(application, catalogue)
+    (found,) = worst_cases([members], base.checks, base.gears, catalogue, samples=512)
+    parts = [(box, points[:8]) for box, points in members.sampled(512)]
+
+    seen = [box.application_at(point) for box, points in parts for point in points]
+    assert len(seen) > 32 and any(one.duty_cycle.motion != application.duty_cycle.motion for one in seen)
+    together = evaluate(duty_of(parts), base.gears, catalogue).used
+    alone = [
+        evaluate(Duty.of([Application.model_validate(one.model_dump(exclude_unset=True))]), base.gears, catalogue)
+        for one in seen
+    ]
+    for row, judged in enumerate(alone):
+        assert np.allclose(together[:, row], judged.used[:, 0], rtol=1e-12, atol=0, equal_nan=True)
+        open_ = ~found.exact.all(axis=1)
+        assert (judged.used[open_, 0] <= found.used[open_] * (1 + 1e-12)).all()
 
 
 WRONG: dict[str, dict[str, Dependence]] = {

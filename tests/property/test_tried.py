@@ -100,7 +100,7 @@ def test_no_figure_of_an_alternative_has_more_than_four_digits(catalogue: Catalo
     found, reader = rejected(random.Random(19), catalogue), Reader.of_marker(marker)
     for application, candidate in (next(found) for _ in range(2000 if soak else 100)):
         for alternative in needed_of(candidate, application, catalogue):
-            text = reader.told(condition_of(alternative)).replace(GROUP, "").replace("T_k", "").replace("N_k", "")
+            text = reader.sentence(condition_of(alternative)).replace(GROUP, "").replace("T_k", "").replace("N_k", "")
             text = re.sub(r"·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", "", text)
             for number in re.findall(r"\d[\d.,]*", text):
                 digits = re.sub(r"\D", "", number)

@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from urllib.parse import parse_qsl
 
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from hpn.application import STOP_LOADS, Application
@@ -148,7 +148,9 @@ def digits_lost(formula: Formula) -> float:
 def test_a_calculation_of_a_motion_gives_the_figures_of_the_reply(motion: Json, seed: int) -> None:
     application = Application.model_validate(moved(random.Random(seed), motion))
     selection = select(application, equipped())
-    candidate = next(one for one in selection.candidates if one.is_judged)
+    candidate = next((one for one in selection.candidates if one.is_judged), None)
+    assume(candidate)  # a load off the centre leaves all sizes without one unrated
+    assert candidate
     gear = equipped().by_designation[candidate.designation]
     steps = calculation_of(candidate, selection.duty, gear, application, equipped())
     lines = [(step.code, line) for step in steps for line in step.lines]
@@ -178,7 +180,7 @@ def test_a_motor_that_turns_its_own_inertia_leaves_no_closed_form_and_says_why()
     selection = select(Application.model_validate(asked), equipped())
     assert selection.foremost.reserve.torque_factor is selection.foremost.reserve.speed_factor is None
     told = {growth.bound.text for growth in growths_of(selection.foremost)["motor_peak_torque"]}
-    assert told == {"no single factor: the motor’s own inertia changes with the motion"}
+    assert told == {"no single factor: the motor’s own inertia changes with the motion, or its torque with the speed"}
 
 
 def test_a_load_that_has_to_drop_drops_in_the_moves() -> None:

@@ -14,6 +14,7 @@ from typing import Any
 
 from tests.reference import handbook as book
 from tests.reference.contract_bearing import at_centre, equivalent, of_wheel
+from tests.reference.contract_curve import AlongCurve, along_curve
 from tests.reference.contract_gears import FLOATS, Answer, Arithmetic, Candidate, Check, Gear, own_of, peak_of
 
 ROOM = 1e-12
@@ -129,14 +130,21 @@ def _judge(
 
     loss = gear.ratio * (wishes.get("efficiency") or 1.0)
     motor = wishes.get("motor") or {}
-    for code, demand, key in (
-        ("motor_speed", n_in_max, "maximum_speed_rpm"),
-        ("motor_peak_torque", duty.T_max / loss, "peak_torque_Nm"),
-        ("motor_rated_torque", duty.T_rms / loss, "rated_torque_Nm"),
-        ("motor_rated_speed", n_in_av, "rated_speed_rpm"),
-    ):
-        if motor.get(key) is not None:
-            at_most(code, demand, motor[key])
+    curve, along, top = motor.get("curve"), AlongCurve(), motor.get("maximum_speed_rpm")
+    if curve:
+        along = along_curve(curve, application["duty_cycle"], gear.ratio, loss, by)
+        at_most("motor_speed", n_in_max, min(curve[-1]["speed_rpm"], INFINITE if top is None else top))
+        at_most("motor_peak_torque", along.demand, along.peak)
+        at_most("motor_rated_torque", duty.T_rms / loss, along.continuous)
+    else:
+        for code, demand, key in (
+            ("motor_speed", n_in_max, "maximum_speed_rpm"),
+            ("motor_peak_torque", duty.T_max / loss, "peak_torque_Nm"),
+            ("motor_rated_torque", duty.T_rms / loss, "rated_torque_Nm"),
+            ("motor_rated_speed", n_in_av, "rated_speed_rpm"),
+        ):
+            if motor.get(key) is not None:
+                at_most(code, demand, motor[key])
     load_checks = len(checks)
 
     temperature = wishes.get("ambient_temperature_degC")
@@ -182,6 +190,8 @@ def _judge(
             "shortest_life_h": _shortest_life(application, life, bearing_life, checks),
             "motor_peak_torque_Nm": duty.T_max / loss,
             "motor_rated_torque_Nm": duty.T_rms / loss,
+            "motor_thermal_torque_Nm": along.thermal,
+            "motor_mean_speed_torque_Nm": along.mean_speed,
             "stop_torque_Nm": T_k,
             "natural_frequency_Hz": frequency,
             "wind_up_arcmin": None if gear.K3 is None else duty.T_max / gear.K3 * 10800 / math.pi,

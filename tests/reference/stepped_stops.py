@@ -1,7 +1,7 @@
 """Stops of two masses stepped in time, all at once: a program that shares nothing with the product.
 
 The motor and the load are two masses on a spring with a gap. Brake and friction are dry: they slip against the motion
-and stick at rest. What the gear and the mechanism lose goes by the sense of the power in each. Everything stands at the
+and stick at rest. Losses of gear and mechanism go by the sense of the power in each. Everything stands at the
 gear's output, torque in Nm, inertia in kg m², angle in rad.
 """
 

@@ -92,6 +92,6 @@ def turn(folder: Path, seconds: int) -> None:
 
 
 def remaining(service: Service) -> int:
-    """How many savings are left of the rate; deleting what is not there counts as one."""
+    """Savings left of the rate; deleting a selection that does not exist counts as one."""
     headers = service.client.delete(f"/api/v1/selections/{'a' * 22}").headers
     return int(headers["RateLimit"].partition("r=")[2].partition(";")[0])

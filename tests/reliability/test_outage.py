@@ -41,13 +41,13 @@ def outage(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, Outage]
 
 
 def test_while_the_database_is_gone_saving_says_when_to_retry_and_the_calculator_works_on(
-    outage: tuple[str, Outage],
+    outage: tuple[str, Outage], soak: bool
 ) -> None:
     database, broken = outage
     with client_of(database) as client:
         before = client.post("/api/v1/selections", json=SAVE)
         with broken():
-            end = time.monotonic() + 5
+            end = time.monotonic() + (5 if soak else 2)
             while time.monotonic() < end:
                 start = time.monotonic()
                 assert_unavailable(client.post("/api/v1/selections", json=SAVE))
@@ -133,14 +133,14 @@ def test_a_refusal_does_not_wait_behind_a_stuck_caller(outage: tuple[str, Outage
     assert answer.json()["errors"][0]["pointer"] == "/application/requirements/ratios/0"
 
 
-MOST_AT_ONCE = 15
-"""Connections of a pool: more transactions than these don't begin at once."""
-
-
 def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outage]) -> None:
-    """A request that comes while a transaction is stuck does not queue behind it, to begin one of its own later."""
+    """A request that comes while a transaction is stuck does not queue behind it, to begin one of its own later.
+
+    15 transactions begin at once, the connections of a pool. A saver that a busy machine starts late may get the place
+    of one that has given up, so that a few more begin; with a queue all of them do.
+    """
     database, broken = outage
-    begun = 0
+    savers, begun = 200, 0
 
     def count(connection: Connection) -> None:
         nonlocal begun
@@ -159,7 +159,7 @@ def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outa
         holding = asyncio.create_task(asyncio.to_thread(hold))
         await asyncio.to_thread(entered.wait)
         event.listen(Engine, "begin", count)
-        outcomes = await asyncio.gather(*(store.save(draft()) for _ in range(200)), return_exceptions=True)
+        outcomes = await asyncio.gather(*(store.save(draft()) for _ in range(savers)), return_exceptions=True)
         event.remove(Engine, "begin", count)
         leave.set()
         await holding
@@ -170,7 +170,7 @@ def test_many_savers_wait_for_a_stuck_database_only_once(outage: tuple[str, Outa
     outcomes = asyncio.run(main())
 
     assert {type(outcome) for outcome in outcomes} == {StoreUnavailableError}
-    assert begun <= MOST_AT_ONCE
+    assert begun < savers / 4
 
 
 def test_the_event_loop_runs_on_while_the_database_is_stuck(tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def test_workers_killed_stopped_and_stuck_are_replaced_while_the_others_answer(
     turns = 10 if soak else 1
     with serving(tmp_path, surroundings) as service:
         started(service, WORKERS)
-        clients = Clients(service.port, pause_s=0.05)  # new workers need the processor to start
+        clients = Clients(service.port, pause_s=0.05 if soak else 0.2)  # new workers need the processor to start
         with saving(clients):
             for turn in range(turns):
                 killed, stopped, stuck = processes(service)[:WORKERS]

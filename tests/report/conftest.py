@@ -1,4 +1,4 @@
-"""LibreOffice, as the second opinion on a workbook."""
+"""LibreOffice, as the second opinion on a workbook, and a machine."""
 
 import shutil
 import subprocess
@@ -8,6 +8,11 @@ from pathlib import Path
 import openpyxl
 import pytest
 from openpyxl.workbook import Workbook
+
+from hpn.catalogue import load_catalogue
+from hpn.documents.revision import Frozen
+from tests.machines import COMMON, frozen, packing_line
+from tests.report.machines import TITLE
 
 Recalculate = Callable[[Mapping[str, Workbook]], dict[str, Workbook]]
 Convert = Callable[[Mapping[str, Workbook], str], dict[str, Path]]
@@ -41,3 +46,9 @@ def recalculate(convert: Convert) -> Recalculate:
 def _saved(book: Workbook, path: Path) -> Path:
     book.save(path)  # openpyxl writes formulas without their values
     return path
+
+
+@pytest.fixture(scope="session")
+def line() -> Frozen:
+    """Revision of a packing line of 40 axes."""
+    return frozen(packing_line(pallet=3), load_catalogue(), COMMON, title=TITLE)

@@ -45,7 +45,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 @pytest.fixture(scope="module")
 def saved(client: TestClient, soak: bool) -> list[tuple[str, Json]]:
     """Ids of saved selections and their replies: some in the short form, 100 in the long one."""
-    chance, count = random.Random(SEED), 100 if soak else 20
+    chance, count = random.Random(SEED), 100 if soak else 10
     replies = []
     for application in (*EXAMPLES, *(at_random(chance) for _ in range(count - len(EXAMPLES)))):
         response = client.post("/api/v1/selections", json={"application": application})

@@ -23,6 +23,12 @@ from tests.report.sizings import element, packed, section, shell
 Alter = Callable[[str, bytes], bytes | None]
 
 
+@pytest.fixture(autouse=True)
+def _no_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Packages without the report, which takes most of the time of making one and of which nothing is read here."""
+    monkeypatch.setattr("hpn.files.aas.submodel.has_extra", lambda extra: False)
+
+
 def rezipped(content: bytes, alter: Alter) -> bytes:
     """A package with its parts altered; None leaves one out."""
     made = io.BytesIO()
@@ -145,6 +151,42 @@ def test_what_is_not_used_is_listed_by_its_path_and_what_is_used_is_not() -> Non
     assert found.unused == (place, "ApplicationRequirements/Environmental/Atex2Gas")
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "named"),
+    [
+        *(("StaticEccentricity", "0.2 m", True), ("InclinationAngle", 0.5, True), ("InclinationAngle", 0, False)),
+        *(("LeverArmRadialForce", "1,1 m", True), ("Efficiency", 0, True), ("Efficiency", "0,98", False)),
+        *(("Efficiency", 200, True), ("NoLoadTorque", "1,1 Nm", False)),
+    ],
+)
+def test_what_acts_on_the_load_and_is_in_no_phase_is_said_apart(name: str, value: object, named: bool) -> None:
+    """Of a table that turns: the weight of a mass off its centre would be missing without a word."""
+    given = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0, CompensationForce=0)
+    table = element("RotraryTable", [element(name, value)], "Entity")
+
+    found = opened(packed(shell([given], table), a=COURSE))
+
+    assert found.problem is None
+    assert (found.note is not None and f": {name}. Add" in found.note.text) == named
+    assert ("TransformationMechanism/RotraryTable" in found.unused) == (named or value == 0)
+
+
+def test_a_package_with_its_application_has_nothing_to_be_added(catalogue: Catalogue) -> None:
+    assert opened(package(typed_export_of(MOVING["rotary table"], catalogue))).note is None
+
+
+def test_a_temperature_that_is_no_number_of_degrees_is_listed_as_not_used() -> None:
+    given = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0)
+    surroundings = element(
+        "Environmental", [element("AmbientTemperatureMotor", "-10 – 60 °C")], "SubmodelElementCollection"
+    )
+
+    found = opened(packed(shell([given], Environmental=surroundings), a=COURSE))
+
+    assert application_of(found).requirements.ambient_temperature_degC is None
+    assert "ApplicationRequirements/Environmental" in found.unused
+
+
 def test_json_alone_has_no_course_and_says_what_is_missing() -> None:
     given = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0)
 
@@ -185,6 +227,16 @@ def with_column(value: str) -> Json:
         (shell([with_column("1000")]), COURSE, "Time is in '1000', and has to be in SI units"),
         (shell([section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque="much")]), COURSE, "is no number"),
         (
+            shell([section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque="4000 Nmm")]),
+            COURSE,
+            "LoadTorque is in 'Nmm', and has to be in SI units",
+        ),
+        (
+            shell([ONE], element("SpindleDrive", [element("NoLoadTorque", "10 lb in")], "Entity")),
+            COURSE,
+            "NoLoadTorque is in 'lb in', and has to be in SI units",
+        ),
+        (
             shell([section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=1e300)]),
             COURSE,
             "/duty_cycle/phases/0",
@@ -195,7 +247,7 @@ def with_column(value: str) -> Json:
             "lacks FeedConstant",
         ),
     ],
-    ids=range(12),
+    ids=range(14),
 )
 def test_what_can_not_be_read_is_said(environment: Json, course: str, text: str) -> None:
     found = opened(packed(environment, a=course))

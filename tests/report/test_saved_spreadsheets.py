@@ -38,7 +38,7 @@ def _book(name: str) -> Workbook:
 
 
 def taken(path: Path) -> str:
-    """Where a file of a duty cycle leads."""
+    """Address to which a file of a duty cycle redirects."""
     client = TestClient(create_app(), follow_redirects=False)
     reply = client.post("/paste", data={"take": "replace"}, files={"file": (path.name, path.read_bytes())})
     assert reply.status_code == 303, reply.text

@@ -37,6 +37,12 @@ BRAKED = cycle(
 Sized = tuple[model.Submodel, dict[str, bytes]]
 
 
+@pytest.fixture(autouse=True)
+def _no_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Packages without the report, which takes most of the time of making one and of which nothing is read here."""
+    monkeypatch.setattr("hpn.files.aas.submodel.has_extra", lambda extra: False)
+
+
 def sized(application: Json, known: Catalogue, **changes: Any) -> Sized:
     """The submodel of an application's package, and the files beside it."""
     submodels, files = read(package(replace(typed_export_of(application, known), **changes), "3.1"))
@@ -183,7 +189,7 @@ def test_utilisations_life_and_messages_are_those_of_the_answer(catalogue: Catal
     told = [{one.id_short: one.value for one in message} for message in messages]
     assert [message["CriticalityOfMessage"] for message in told] == ["Information"] * len(told)
     english = Reader(digits=DIGITS)
-    notices = [english.told(notice.sentence) for notice in export.selection.notices]
+    notices = [english.sentence(notice.sentence) for notice in export.selection.notices]
     assert [message["MessageText"]["en"] for message in told[1:]] == notices
 
 

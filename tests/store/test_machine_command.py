@@ -99,6 +99,7 @@ def test_open_questions_about_a_table_are_said_and_answered(tmp_path: Path, hpn:
     [
         ("line.json", "", "no machine"),
         ("line.json", "[]", "no machine"),
+        ("line.json", "[" * 100_000, "nested too deeply"),
         ("line.json", '{"axes": [{"quantity": 0}]}', "/axes/0/quantity"),
         ("line.json", '{"axes": [], "nonsense": 1}', "nonsense"),
         ("line.json", '{"revisions": [{"revision": {}}]}', "no machine"),

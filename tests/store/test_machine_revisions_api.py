@@ -1,5 +1,7 @@
 """Revisions of machines and selections over REST, and what has changed since."""
 
+import re
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,8 @@ from starlette.testclient import TestClient
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.build import worked_example
+from tests.conftest import Supplement
+from tests.state import state_of
 from tests.store.drafts import WEAKER
 from tests.store.test_machines_api import ADDRESS, AXES, COMMON, read, save
 
@@ -128,3 +132,31 @@ def test_a_selection_s_working_copy_changes_and_the_selection_stays(client: Test
 
     assert changed.json()["answer"]["selected"] != before["selected"]
     assert read(client, f"/api/v1/selections/{id}") == before
+
+
+def test_what_today_says_of_a_machine_is_saved_as_the_next_revision(
+    client: TestClient, supplemented: Supplement
+) -> None:
+    place = save(client, axes=[{"name": "Turret", "application": worked_example(requirements={"ratios": [5]})}])
+    url = read(client, place)["url"]
+    for label in "AB":
+        assert client.post(f"{place}/revisions", json={"label": label}).status_code == 201
+    before = read(client, f"{place}/revisions/B")["axes"]
+    assert "Save today’s as" not in client.get(f"{url}/revisions").text
+    state_of(client).catalogue = supplemented(ratings=WEAKER)
+
+    page = client.get(f"{url}/revisions").text
+    form = re.search(r'<form class="save-today".*?</form>', page, re.DOTALL)
+    assert form is not None and "Save today’s as C" in form[0]
+    fields = {name: unescape(text) for name, text in re.findall(r'name="(\w+)"\s+value="([^"]*)"', form[0])}
+    saved = client.post(f"{url}/revisions", data=fields, follow_redirects=False)
+
+    assert saved.status_code == 303, saved.text
+    listed = read(client, f"{place}/revisions")["revisions"]
+    assert [line["label"] for line in listed] == ["C", "B", "A"] and "engine" in listed[0]["note"]
+    (then,), (now,) = before, read(client, f"{place}/revisions/C")["axes"]
+    assert now["application"] == then["application"] and now["answer"]["selected"] != then["answer"]["selected"]
+    assert now["answer"]["catalogue_version"] == state_of(client).catalogue.version
+    assert read(client, f"{place}/revisions/B")["axes"] == before
+    assert read(client, f"{place}/differences?from=C&to=today")["axes"] == []
+    assert client.post(f"{url}/revisions", data=fields, follow_redirects=False).status_code in (409, 412)

@@ -1,5 +1,6 @@
 """Machines out of tables over REST: each format, questions and their answers, and a machine's own table taken back."""
 
+from collections.abc import Iterator
 from io import BytesIO
 from typing import Any
 
@@ -10,6 +11,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.web.api.machine_tables import TABLES, WORKBOOK
+from hpn.web.app import create_app
+from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, worked_example
 from tests.fleet.test_machine_axes import HARD
 from tests.machines import axis
@@ -21,6 +24,14 @@ ROWS: list[Json] = [
     {"axis": "Turn", "torque_Nm": [9.0], "speed_rpm": [60.0], "duration_s": [8.0], "quantity": None},
 ]
 CELLS = "Achse;Stück;Moment;Drehzahl [1/min];Dauer [s]\nLift;3;40,5;250;2\n;;20;100;1\nGreifer;;4;300;1\n"
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A service for all tests: what reads tables takes a second to start. test_machines_api saves on each database."""
+    file = tmp_path_factory.mktemp("tables") / "store.sqlite3"
+    with TestClient(create_app(Settings(database_url=f"sqlite:///{file}"))) as client:
+        yield client
 
 
 def post(client: TestClient, content: bytes, kind: str, query: str = "", **headers: str) -> Any:

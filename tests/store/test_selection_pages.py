@@ -251,6 +251,40 @@ def test_the_verdict_comes_before_the_input_and_the_chain_names_every_revision(c
     assert f'href="{place}/revisions"' in page and "The working copy has changed" not in text_of(page)
 
 
+def test_the_chain_names_the_gear_of_each_revision(client: TestClient) -> None:
+    place = sent(client, title="Turret", rev="A")
+    frozen(client, place, "B", requirements={"ratios": [7]})
+
+    page = client.get(place).text
+    chain = text_of(page[page.index('<ol class="chain') : page.index("</ol>", page.index('<ol class="chain'))])
+
+    for label, before in (("B", "this one"), ("A", "Revision A")):
+        answer = client.get(f"/api/v1/machines/{place.rpartition('/')[2]}/revisions/{label}").json()["axes"][0][
+            "answer"
+        ]
+        used = f"{answer['utilisation']:.0%}".replace("%", " %")
+        said = re.search(rf"{before} \d{{4}}-\d\d-\d\d (.*?)(?= A |$)", chain)
+        assert said and f"{answer['selected']}, {used}" in said[1].replace("\u202f", " "), chain
+
+
+@pytest.mark.parametrize(("load", "changes"), [({}, 1), ({"output_load": {"radial_N": 500.0, "axial_N": 200.0}}, 2)])
+def test_what_would_make_a_lighter_gear_fit_is_taken_into_a_copy(client: TestClient, load: Json, changes: int) -> None:
+    """In the copy the lighter gear passes with the changed input, and what is saved stays to the byte."""
+    link = to_link(Application.model_validate(worked_example(requirements={"ratios": [5]}, **load)))
+    address = sent(client, link=link, title="Turret")
+    page, kept = client.get(address).text, client.get(f"/api/v1{address}").content
+    fails = page[page.index("Nearest lighter gear") :]
+    lighter = re.search(r"HPN-[0-9]+A-[0-9]+", fails)
+    copies = [html.unescape(link) for link in re.findall(r'<a href="([^"]*)">in a copy</a>', fails)]
+
+    assert lighter and len(set(copies)) == len(copies) == changes and "Try it" not in page
+    for copied in copies:
+        copy = client.get(copied).text
+        verdict = copy[copy.index('id="verdict"') : copy.index("</h2>", copy.index('id="verdict"'))]
+        assert lighter[0] in verdict and 'class="status suitable"' in verdict and 'id="application"' in copy
+    assert client.get(f"/api/v1{address}").content == kept
+
+
 def test_an_earlier_revision_leads_to_the_latest_and_its_gears_stay_its_own(client: TestClient) -> None:
     place = sent(client, title="Turret", rev="A")
     frozen(client, place, "B", requirements={"ratios": [7]})

@@ -83,6 +83,35 @@ def test_a_revision_that_there_is_not_is_a_refusal(client: TestClient, label: st
         assert client.get(place).status_code in (404, 422), place
 
 
+def test_a_revision_that_there_is_not_is_named_with_those_that_there_are(client: TestClient) -> None:
+    id = save(client, revision="A")
+    client.post(f"{SELECTIONS}/{id}/revisions", json={"application": HEAVIER, "label": "B"})
+    text = "There is no revision “C”; there are B, A."
+    for place in (
+        f"{SELECTIONS}/{id}?revision=C",
+        f"{SELECTIONS}/{id}/revisions/C",
+        f"{SELECTIONS}/{id}/report.xlsx?revision=C",
+        f"{MACHINES}/{id}/revisions/C",
+        f"{MACHINES}/{id}/axes.csv?revision=C",
+        f"{MACHINES}/{id}/differences?from=A&to=C",
+    ):
+        reply = client.get(place)
+        assert (reply.status_code, reply.json()["detail"]) == (404, text), place
+    for place in (f"/selections/{id}?revision=C", f"/selections/{id}/revisions?from=A&to=C"):
+        page = client.get(place)
+        assert page.status_code == 404 and text in page.text, place
+        assert all(f'href="/selections/{id}?revision={label}"' in page.text for label in "AB")
+    assert "It may have been deleted" in client.get("/selections/AAAAAAAAAAAAAAAAAAAAAA?revision=C").text
+
+
+def test_of_many_revisions_the_latest_twenty_are_named(client: TestClient) -> None:
+    place = f"{MACHINES}/{save(client)}"
+    for number in range(2, 23):
+        assert client.post(f"{place}/revisions", json={"label": str(number)}).status_code == 201
+    text = client.get(f"{place}/revisions/x").json()["detail"]
+    assert text.startswith("There is no revision “x”; there are 22, 21, 20, ") and text.endswith("3 and 2 older ones.")
+
+
 def test_a_key_freezes_once_and_a_label_is_taken_once(client: TestClient) -> None:
     id, place = (made := save(client)), f"{SELECTIONS}/{made}/revisions"
     body: Json = {"application": HEAVIER, "label": "B"}

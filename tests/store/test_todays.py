@@ -216,7 +216,7 @@ def line(client: TestClient) -> TestClient:
 
 
 @pytest.mark.parametrize("address", ["machines", "machines?kind=all"])
-@pytest.mark.parametrize("name", ["saved", "created", "updated", "title", "reference", "utilisation", "axes"])
+@pytest.mark.parametrize("name", ["saved", "created", "updated", "title", "reference", "utilisation", "axes", "weight"])
 def test_each_order_is_the_other_reversed_whole_or_in_parts(line: TestClient, address: str, name: str) -> None:
     and_ = "&" if "?" in address else "?"
 
@@ -269,3 +269,11 @@ def test_selections_take_the_filters_of_machines(client: TestClient) -> None:
         assert [each["id"] for each in read(client, f"selections?{query}")["selections"]] == expected, query
     client.delete(f"/api/v1/selections/{first}")
     assert read(client, "selections?deleted_since=2000-01-01T00:00:00Z")["deleted"] == [first]
+
+
+@pytest.mark.parametrize("text", ["soon", "2026-13-01", "2026-11-27T8"])
+def test_a_time_is_asked_for_by_an_example(client: TestClient, text: str) -> None:
+    (error,) = client.get(f"/api/v1/selections?updated_since={text}").json()["errors"]
+
+    assert error["pointer"] == "/updated_since"
+    assert error["detail"] == "must be a date or time, such as 2026-11-27 or 2026-11-27T08:00:00Z"

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from datetime import UTC, datetime
 from multiprocessing.context import ForkServerContext
 from multiprocessing.synchronize import Barrier
@@ -29,13 +30,22 @@ from hpn.documents import revision
 from hpn.engine import selection
 from hpn.engine.selection import encode
 from hpn.fleet.machine import as_parquet
-from hpn.store import KeyReusedError, KeySpentError, NewerDatabaseError, Store, upgrade
+from hpn.store import (
+    Change,
+    KeyReusedError,
+    KeySpentError,
+    Limits,
+    MachineDraft,
+    NewerDatabaseError,
+    Store,
+    upgrade,
+)
 from hpn.store.engine import make_engine
 from hpn.store.saved import unpacked
-from hpn.store.tables import UtcTime, metadata, revisions
+from hpn.store.tables import UtcTime, documents, metadata, revisions
 from tests.build import Json, cycle, phase
 from tests.store.drafts import change, draft
-from tests.store.test_machines import FIRST
+from tests.store.test_machines import FIRST, axis
 
 pytestmark = pytest.mark.anyio
 
@@ -300,6 +310,56 @@ async def test_fleets_of_earlier_versions_are_renamed_saved_and_deleted(database
     assert {line.title for line in (await store.machines())[0]} == {"saved", "new", "damaged"}
     assert not await store.delete(kept, 1, "machine") and await store.delete(kept, 2, "machine")
     await store.close()
+
+
+GEARED: list[Json] = [
+    {"designation": "HPN-11A-5", "selected": "HPN-11A-5", "weight_kg": 0.3, "utilisation": 0.8},
+    {"designation": "HPN-14A-4", "selected": "HPN-14A-4", "weight_kg": 1.1, "utilisation": 0.9},
+    {"designation": "HPN-14A-4", "selected": "HPN-11A-5", "weight_kg": 1.1, "status": "unsuitable", "utilisation": 1.4},
+    {"designation": "HPN-11A-5", "selected": None, "weight_kg": 0.3, "status": "unsuitable"},
+]
+COLUMNS = ("gears", "kinds", "weight_kg", "governing_axis", "revised", "changes")
+
+
+@pytest.mark.parametrize("lacking", ["nothing", "mass", "gear"])
+async def test_machines_of_before_get_the_gears_that_they_would_be_kept_with(
+    store: Store, database: str, lacking: str
+) -> None:
+    unknown = lacking != "nothing"
+    axes = [
+        replace(each, answer={**each.answer, **columns}, quantity=n, ordering_code="J6" if n == 3 else None)
+        for n, columns in enumerate(GEARED, 1)
+        for each in [axis(f"axis {n}")]
+    ]
+    gone = replace(axes[1], answer={**axes[1].answer, "designation": "HPN-40A-5", "selected": "HPN-40A-5"})
+    axes.append(gone)
+    if lacking == "mass":  # as of a version that did not know it
+        axes[0] = replace(axes[0], answer={**axes[0].answer, "weight_kg": None})
+    if lacking == "gear":  # an open axis, whose ordering code is a gear to order all the same
+        axes.append(replace(axis("open", "open", None), quantity=20, ordering_code="J6"))
+    id = await store.add_machine(MachineDraft(axes, "1", "c"))
+    assert await store.freeze(id, 1, FIRST, Limits(10, 100, 10)) == "B"
+    changed = Change(1, changed=[(1, 1, axes[0])], removed=[(5, 1)])
+    assert await store.change(id, changed, Limits(10, 100, 10)) == []
+    query = select(*(documents.c[name] for name in COLUMNS))
+    async with store._engine.connect() as connection:
+        before = (await connection.execute(query)).one()
+    gears, kinds = (26, None) if lacking == "gear" else (6, 2)
+    assert before[:4] == (gears, kinds, None if unknown else pytest.approx(0.3 + 2 * 1.1 + 3 * 1.1, rel=1e-12), 2)
+    assert before.changes == 2 and before.revised is not None
+
+    for name in (*COLUMNS, "edited"):
+        await run(store, f"ALTER TABLE documents DROP COLUMN {name}")
+    await run(store, "UPDATE alembic_version SET version_num = '0013'")
+    await store.close()
+    later = Store(database)
+    await later.open()
+    async with later._engine.connect() as connection:
+        after = (await connection.execute(query)).one()
+    await later.close()
+
+    assert after[:2] == before[:2] and after[3:] == before[3:]
+    assert after.weight_kg == (None if unknown else pytest.approx(before.weight_kg, rel=1e-12))  # summed anew
 
 
 async def test_keys_of_earlier_versions_are_what_they_were(database: str) -> None:

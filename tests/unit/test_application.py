@@ -208,7 +208,19 @@ def test_every_printed_spelling_of_a_designation_is_read(catalogue: Catalogue, t
     assert found.designation == "HPN-20A-5"
 
 
-@pytest.mark.parametrize("text", ["", "HPN", "HPN-20A", "HPN-20B-5", "HPN-20A-6", "HPN-20A-5J6", "x" * 5000, "20A5"])
+@pytest.mark.parametrize(
+    "text", ["20A 5:1", "20a 5", "20 5", "HPN 20A 5", "HPN 20A-5", "20A i=5", "20A-5 : 1", "hpn 20a i 5"]
+)
+def test_a_designation_as_people_type_it_is_read(catalogue: Catalogue, text: str) -> None:
+    found = catalogue.find(text)
+
+    assert found is not None
+    assert found.designation == "HPN-20A-5"
+
+
+@pytest.mark.parametrize(
+    "text", ["", "HPN", "HPN-20A", "HPN-20B-5", "HPN-20A-6", "HPN-20A-5J6", "x" * 5000, "20A5", "20A 5:2", "20A 1:5"]
+)
 def test_a_text_that_is_no_designation_is_not_found(catalogue: Catalogue, text: str) -> None:
     assert catalogue.find(text) is None
 

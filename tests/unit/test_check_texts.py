@@ -70,7 +70,7 @@ def test_a_remedy_has_words_for_every_check() -> None:
     for check in CHECKS:
         told = [bool(check.moves), "{value}" in check.accepted, check.code in of_its_own].count(True)
         assert told == (2 if check.code in not_in_closed_form else 1), check.code
-        assert not check.accepted or (check.asked and (suffix_of(check.asked) or not check.unit)), check.code
+        assert not check.accepted or (check.trigger and (suffix_of(check.trigger) or not check.unit)), check.code
 
 
 def test_no_check_is_listed_twice() -> None:

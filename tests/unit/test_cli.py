@@ -4,7 +4,6 @@ import errno
 import io
 import json
 import os
-import re
 import signal
 import socket
 import subprocess
@@ -19,7 +18,6 @@ import pytest
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
 from hpn.cli import main
-from hpn.web.settings import Settings
 from tests.build import Json, cycle, phase, worked_example
 
 Output = pytest.CaptureFixture[str]
@@ -122,7 +120,9 @@ def test_a_file_with_a_byte_order_mark_is_read(file: Path, capsys: Output) -> No
         ("", "is a folder, where a file belongs"),
         ("none.json", "there is no such file"),
         ("none/none.json", "there is no such file"),
-        ("text.txt", "Invalid JSON: expected ident at line 1 column 2; an application is a JSON object"),
+        ("text.txt", "is not JSON: expected ident at line 1 column 2; an application is a JSON object"),
+        ("blank.json", "is empty; an application is a JSON object"),
+        ("powershell.json", "is not text in UTF-8; an application is a JSON object"),
         ("endless", "is larger than an application can be"),
     ],
 )
@@ -130,6 +130,8 @@ def test_a_file_that_is_no_application_is_named_in_one_line(
     tmp_path: Path, name: str, words: str, capsys: Output
 ) -> None:
     (tmp_path / "text.txt").write_text("torque speed time", encoding="utf-8")
+    (tmp_path / "blank.json").write_text("\n", encoding="utf-8")
+    (tmp_path / "powershell.json").write_text("{}", encoding="utf-16")
     (tmp_path / "endless").symlink_to("/dev/zero")
 
     assert main(["select", str(tmp_path / name)]) == 2
@@ -190,10 +192,10 @@ def test_a_port_that_permissions_forbid_is_a_sentence(monkeypatch: pytest.Monkey
 def test_a_mistake_of_the_program_is_another_code_of_select_than_no_suitable_gear(
     file: Path, monkeypatch: pytest.MonkeyPatch, capsys: Output
 ) -> None:
-    monkeypatch.setattr("hpn.cli.select.load_catalogue", lambda *folders: 1 / 0)
+    monkeypatch.setattr("hpn.web.settings.load_catalogue", lambda *folders: 1 / 0)
     assert main(["select", write(file, worked_example())]) == 3
 
-    monkeypatch.setattr("hpn.cli.select.load_catalogue", lambda *folders: bytearray(1 << 62))
+    monkeypatch.setattr("hpn.web.settings.load_catalogue", lambda *folders: bytearray(1 << 62))
     assert main(["select", str(file)]) == 3
     assert capsys.readouterr().err.endswith("hpn can’t go on: this takes more memory than there is\n")
 
@@ -345,50 +347,10 @@ def test_a_reader_who_has_seen_enough_ends_it_quietly(arguments: list[str]) -> N
     assert process.returncode == 128 + signal.SIGPIPE  # as a shell says it of a program that SIGPIPE has ended
 
 
-@pytest.mark.parametrize(
-    "arguments", [[], ["selct"], ["select"], ["select", "a", "b"], ["serve", "--port", "http"], ["--port"], ["key"]]
-)
-def test_a_wrong_command_is_exit_code_2_with_usage(arguments: list[str], capsys: Output) -> None:
-    with pytest.raises(SystemExit) as exit_:
-        main(arguments)
+@pytest.mark.parametrize("command", [["mcp"], ["fleet", "axes.csv", "answers.csv"]])
+def test_a_service_that_is_no_address_is_refused(command: list[str], capsys: Output) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main([*command, "--service", "plm.example"])
 
-    assert exit_.value.code == 2
-    error = capsys.readouterr().err
-    assert error.startswith("usage: hpn")
-    assert error.count("\n") == 2 and "error: " in error
-
-
-def test_help_names_every_command(capsys: Output) -> None:
-    with pytest.raises(SystemExit) as exit_:
-        main(["--help"])
-
-    assert exit_.value.code == 0
-    out = capsys.readouterr().out
-    assert re.findall(r"^ {4}(\w+)", out.partition("exit codes")[0], re.M) == [
-        "select",
-        "fleet",
-        "machine",
-        "verify",
-        "catalogue",
-        "serve",
-        "mcp",
-        "database",
-        "key",
-    ]
-
-
-def test_help_has_every_setting_with_its_default_and_every_exit_code(capsys: Output) -> None:
-    with pytest.raises(SystemExit):
-        main(["--help"])
-
-    out = capsys.readouterr().out
-    shown = dict(re.findall(r"^  (HPN_[A-Z_]+)(?: \((.*)\))?$", out, re.M))
-    assert set(shown) == {f"HPN_{name.upper()}" for name in Settings.model_fields}
-    assert (shown["HPN_PORT"], shown["HPN_API_KEYS"]) == ("8000", "")
-    assert shown["HPN_GUARDED"] == "batch,deleting,listing,writing"
-    assert shown["HPN_DATABASE_URL"] == "sqlite:///hpn.sqlite3"
-    words = " ".join(out.split())
-    assert all((field.description or "?") in words for field in Settings.model_fields.values())
-    table = (Path(__file__).parents[2] / "docs/command-line.md").read_text()
-    codes = re.findall(r"^\| (\d) \|", table, re.M)
-    assert re.findall(r"^  (\d) ", out, re.M) == codes == ["0", "1", "2", "3"]
+    assert ended.value.code == 2
+    assert "must be an address, such as https://plm.example; 'plm.example' is none" in capsys.readouterr().err

@@ -10,6 +10,8 @@ from hpn.catalogue import Catalogue
 from hpn.documents.differences import DifferentAxis, DocumentDifferences, differences, today
 from hpn.documents.revision import Frozen
 from hpn.documents.summary import summary_of
+from hpn.files.machine.changes import input_cells
+from hpn.words.reader import Reader
 from tests.build import Json, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.machines import COMMON, axis, frozen, packing_line
@@ -89,6 +91,36 @@ def test_name_quantity_note_code_and_what_does_not_hold_are_inputs(catalogue: Ca
         "/ordering_code": (None, "HPN-20A-5"),
         "/without": ([], ["requirements.utilisation"]),
     }
+
+
+def test_what_does_not_hold_is_said_by_the_names_of_its_inputs(catalogue: Catalogue) -> None:
+    common = ALONE | {"tolerances": {"torque_Nm": {"percent": 10}}}
+    after = axis("a", worked_example(), without=["requirements.utilisation", "tolerances.torque_Nm"])
+    found = of_one(axis("a", worked_example()), after, catalogue, common)
+    cells = [input_cells(found.inputs, reader)[0] for reader in (Reader(), Reader("de"))]
+    assert cells[0] == ("Common values that do not hold", "–", "Maximum utilisation; ± Torque, all phases")
+    assert cells[1][2] == "Maximale Auslastung; ± Drehmoment, alle Phasen"
+
+
+def test_a_tolerance_that_differs_is_said_by_the_name_of_its_input(catalogue: Catalogue) -> None:
+    both_sides = {"torque_Nm": {"percent": 10}}
+    apart = {"phases.0.speed_rpm": {"minus": {"percent": 2}, "plus": {"absolute": 5.0}}, "unheard_of": {"percent": 1}}
+    one = frozen([axis("a", worked_example())], catalogue, {"tolerances": both_sides})
+    other = frozen(
+        [axis("a", worked_example(tolerances=apart))],
+        catalogue,
+        {"tolerances": both_sides | {"torque_Nm": {"percent": 5}}},
+    )
+
+    found = compared(one, other, catalogue)
+
+    assert input_cells(found.common, Reader()) == [("± Torque, all phases", "10\u202f%", "5\u202f%")]
+    assert input_cells(found.axes[0].inputs, Reader()) == [
+        ("− Speed, phase 1", "–", "2\u202f%"),
+        ("+ Speed, phase 1", "–", "5\u202frpm"),
+        ("tolerances.unheard_of.percent", "–", "1"),
+    ]
+    assert input_cells(found.common, Reader("de"))[0][0] == "± Drehmoment, alle Phasen"
 
 
 def test_other_last_bits_are_no_difference_and_a_relative_ppt_more_is_one(catalogue: Catalogue) -> None:

@@ -157,8 +157,8 @@ def test_planes_say_in_words_what_they_show() -> None:
     german = Reader(language="de")
     subject = subject_of(document)
 
-    gear = " ".join(map(german.told, gear_plane(subject, german).words))
-    motor = " ".join(map(german.told, motor_plane(subject, german).words))
+    gear = " ".join(map(german.sentence, gear_plane(subject, german).words))
+    motor = " ".join(map(german.sentence, motor_plane(subject, german).words))
     assert gear.startswith("Größtes Drehmoment 60\u202fNm von 149\u202fNm, größte Drehzahl 660")
     assert motor.startswith("Größtes Drehmoment 15\u202fNm von 14\u202fNm, größte Drehzahl 3.300")
 

@@ -10,7 +10,8 @@ from hpn.catalogue import Catalogue
 from hpn.engine.motors import MOTOR_CHECKS, motors_on, ratios_with_motor, with_motor
 from hpn.engine.selection import select
 from hpn.physics.equations import FloatArray
-from hpn.physics.motion import Course, motor
+from hpn.physics.motion import motor
+from hpn.physics.motion.motor import Courses
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 from tests.reference.test_motion import CONTRACT, SCREW
@@ -143,7 +144,7 @@ def test_how_many_pieces_are_looked_at_together_changes_no_torque(
     looked_at: list[int] = []
     peak_torque = motor.peak_torque
 
-    def counted(course: Course, *, ratio: FloatArray, **more: Any) -> FloatArray:
+    def counted(course: Courses, *, ratio: FloatArray, **more: Any) -> FloatArray:
         looked_at.append(len(ratio))
         return peak_torque(course, ratio=ratio, **more)
 

@@ -8,7 +8,7 @@ from hpn.application import Application, ApplicationArea
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.notice import AREAS
-from hpn.engine.selection import Judged, Selection, select
+from hpn.engine.selection import Judgement, Selection, select
 from tests.build import Json, answer, candidate, check, cycle, notices, phase
 from tests.conftest import Supplement
 
@@ -191,7 +191,7 @@ def test_a_cycle_beside_longer_ones_has_the_same_notice_on_long_runs() -> None:
     phases = [phase(1, 350, 200), phase(1, 50, 600), phase(1, 350, 200)]
     short, long = (Application.model_validate(cycle(*one, requirements=asked)) for one in (phases, [*phases, *phases]))
     catalogue = load_catalogue()
-    selection = judge_batch([short, long], catalogue, Judged.selection)[0]
+    selection = judge_batch([short, long], catalogue, Judgement.selection)[0]
 
     assert isinstance(selection, Selection)
     assert selection.notices == select(short, catalogue).notices

@@ -270,7 +270,7 @@ def test_a_thousand_moves_make_a_small_drawing_that_misses_no_peak(gravity: Json
 
 def test_a_motion_is_told_in_the_readers_language_and_units_with_its_peak() -> None:
     reader = Reader(language="de", units=("lb_in",))
-    words = " ".join(map(reader.told, picture_of(LIFTING, reader).words))
+    words = " ".join(map(reader.sentence, picture_of(LIFTING, reader).words))
 
     assert words.startswith("Bewegung von ")
     assert "lb·in" in words

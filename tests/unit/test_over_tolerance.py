@@ -1,20 +1,27 @@
 """A gear over the tolerances as pages and files tell it: corners, deciding inputs, and how far each may lie."""
 
+import copy
+from collections.abc import Iterator
+from itertools import product
+from typing import Any
+
 import pytest
 
 from hpn.account.account import Account
 from hpn.account.inputs import lines_of
-from hpn.account.over_tolerance import OverTolerance, over_tolerance
+from hpn.account.over_tolerance import DecidingLine, OverTolerance, line_of, over_tolerance
 from hpn.application import Application, InputError
+from hpn.application.input_fields import takes_tolerance
 from hpn.application.tolerances import Tolerance
 from hpn.catalogue import Catalogue
 from hpn.engine.allowed import with_listed_motor
+from hpn.engine.alone import Alone
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import evaluate
 from hpn.engine.room import allowed_of, scaled, with_tolerance
 from hpn.engine.selection import judge
 from hpn.words.reader import Reader
-from tests.build import TURNING, Json, cycle, phase
+from tests.build import LIFTING, TURNING, Json, answer, check, cycle, notices, phase
 
 DISC: Json = cycle(
     phase(95.1, 110, duration_s=0.3),
@@ -134,7 +141,7 @@ def test_the_largest_tolerance_that_holds_is_that_of_bisection(
 ) -> None:
     """2 ways: the engine solves for the excess over the limit, the test bisects over the verdict on all gears."""
     gear = judge(application, catalogue).selection(with_room=False).candidates[0].designation
-    allowed = allowed_of(application, catalogue.by_designation[gear], catalogue, path)
+    allowed = allowed_of(Alone.of(application, catalogue.by_designation[gear], catalogue), path)
     found = by_bisection(application, path, gear, catalogue)
 
     assert allowed is not None
@@ -151,7 +158,7 @@ def test_a_tolerance_that_no_change_of_its_own_mends_is_none_of_the_remedies(cat
     )
     over = account(Application.model_validate(asked.model_dump(exclude_unset=True)), catalogue)
 
-    assert [line.given.path for line in over.holding] == []
+    assert [line.tolerance.path for line in over.holding] == []
 
 
 def test_what_is_printed_of_a_remedy_holds(catalogue: Catalogue) -> None:
@@ -159,10 +166,10 @@ def test_what_is_printed_of_a_remedy_holds(catalogue: Catalogue) -> None:
     gear = over.account.candidate.designation
     (line,) = over.holding
 
-    assert line.given.path == "torque_Nm"
-    assert line.given.text(Reader(), line.allowed or 0) == "±16.8\u202f%"
-    assert holds(with_tolerance(WIDE, line.given.path, line.allowed or 0), gear, catalogue)
-    assert not holds(with_tolerance(WIDE, line.given.path, 16.9 / 20), gear, catalogue)
+    assert line.tolerance.path == "torque_Nm"
+    assert line.tolerance.text(Reader(), line.allowed or 0) == "±16.8\u202f%"
+    assert holds(with_tolerance(WIDE, line.tolerance.path, line.allowed or 0), gear, catalogue)
+    assert not holds(with_tolerance(WIDE, line.tolerance.path, 16.9 / 20), gear, catalogue)
 
 
 SAMPLED = [
@@ -187,9 +194,28 @@ def test_a_smaller_tolerance_holds_at_every_sample(
 
     gear, path = over.account.candidate.designation, "torque_Nm"
     known = catalogue.by_designation[gear]
-    for factor in (over.room.growth, allowed_of(application, known, catalogue, path)):
+    for factor in (over.room.growth, allowed_of(Alone.of(application, known, catalogue), path)):
         assert factor is not None and 0 < factor < 1
         assert holds(with_tolerance(application, path, factor), gear, catalogue)
+
+
+def test_an_input_that_moves_no_check_decides_nothing_of_a_sampled_motion(catalogue: Catalogue) -> None:
+    """A pause has no part in the average torque; without the tolerance of the time, the case is the one as given."""
+    tolerances = {"motion.moves.0.time_s": {"percent": 5}, "pause_s": {"percent": 10}}
+    motion = {"duty_cycle": {"motion": TURNING, "pause_s": 1.0}, "tolerances": tolerances}
+    over = account(Application.model_validate(motion), catalogue)
+    (line,) = over.deciding
+
+    assert over.room is not None and not over.room.exact
+    assert line.tolerance.path == "motion.moves.0.time_s"
+    assert line.worst == pytest.approx(over.account.candidate.utilisation, rel=1e-12)
+
+
+@pytest.mark.parametrize(("worst", "exact", "told"), [(1.0213, 1.0195, "102.1 102"), (1.02, 0.99, "102 99")])
+def test_a_fall_is_told_by_percentages_that_differ(worst: float, exact: float, told: str) -> None:
+    line = DecidingLine(line_of("torque_Nm", Tolerance(percent=1)), exact, None)
+    shown = " ".join(Reader().percent(share, line.between(worst)).split("\u202f")[0] for share in (worst, exact))
+    assert shown == told
 
 
 def test_growth_beyond_the_tolerances_holds_at_every_sample(catalogue: Catalogue) -> None:
@@ -221,4 +247,138 @@ def test_how_gears_are_judged_is_an_input_in_words_where_it_is_no_default(worst:
     wishes = {"over_tolerance": worst}
     application = Application.model_validate(cycle(phase(40, 250), requirements=wishes))
     lines = lines_of(application, ["requirements.over_tolerance"])
-    assert [line.shown(Reader()) for line in lines] == said
+    assert [line.value_for(Reader()) for line in lines] == said
+
+
+def test_of_a_motion_with_one_time_that_varies_nothing_is_proved_and_that_is_said(catalogue: Catalogue) -> None:
+    """Inputs that leave times and ways, such as an inertia, are worst at an end; beside others no longer."""
+    inertia, time = "motion.mechanism.inertia_kgm2", "motion.moves.0.time_s"
+    for paths, proved in (([inertia], True), ([inertia, time], False), ([time], False)):
+        tolerances = {path: {"percent": 2} for path in paths}
+        reply = answer({"duty_cycle": {"motion": TURNING}, "tolerances": tolerances}, catalogue)
+        checks = reply["candidates"][0]["checks"]
+        assert [one["exact"] for one in checks] == [proved] * len(checks)
+        assert ("tolerances_of_motion_sampled" in notices(reply)) != proved
+
+
+ASKED: Json = {
+    "output_load": {"radial_N": 300.0, "axial_N": 100.0, "load_coefficient": 1.3, "radial_position_mm": 30.0}
+    | {"axial_radius_mm": 12.0, "shaft_centre_mm": 21.0},
+    "requirements": {"sizes": ["20A"], "ratios": [5, 25], "life_h": 20000.0, "efficiency": 0.9}
+    | {
+        "natural_frequency_Hz": 6.0,
+        "position_error_mm": 2.0,
+        "position_radius_mm": 300.0,
+        "ambient_temperature_degC": 25.0,
+    }
+    | {"backlash_arcmin": 6.0, "torsional_stiffness_Nm_per_rad": 9000.0, "weight_kg": 4.0, "length_mm": 150.0}
+    | {
+        "motor": {
+            "maximum_speed_rpm": 4000.0,
+            "rated_speed_rpm": 3000.0,
+            "peak_torque_Nm": 20.0,
+            "rated_torque_Nm": 8.0,
+        }
+    },
+}
+BRAKE: Json = {"torque_Nm": 40.0, "rise_time_s": 0.01, "reaction_time_s": 0.02, "speed_rpm": 50.0}
+ROTOR: Json = {"inertia_kgm2": 5e-4, "inertia_ratio": 5.0}
+
+
+def turning(stop: Json, **motor: float) -> Json:
+    motion = TURNING | {"mechanism": TURNING["mechanism"] | {"inertia_kgm2": 0.9}}
+    requirements = ASKED["requirements"] | {"motor": ASKED["requirements"]["motor"] | motor}
+    document = {"duty_cycle": {"motion": motion, "pause_s": 0.5}, "emergency_stop": stop}
+    return ASKED | document | {"requirements": requirements}
+
+
+def typed(stop: Json, **motor: float) -> Json:
+    phases = cycle(phase(30, 100, 0.5), phase(-20, 60, 0.8, radial_N=400.0), phase(5, 0, 0.3), pause_s=0.5)
+    document = turning(stop, **motor) | phases
+    return document | {"requirements": document["requirements"] | {"load_inertia_kgm2": 0.9, "rest_friction_Nm": 2.0}}
+
+
+def numbers_of(
+    part: Json | list[Any], place: tuple[str | int, ...] = ()
+) -> Iterator[tuple[tuple[str | int, ...], float]]:
+    for name, value in part.items() if isinstance(part, dict) else enumerate(part):
+        if isinstance(value, dict | list):
+            yield from numbers_of(value, (*place, name))
+        elif isinstance(value, float | int) and value:
+            yield (*place, name), value
+
+
+def moved_to(document: Json, place: tuple[str | int, ...], value: float) -> Json:
+    moved = copy.deepcopy(document)
+    *way, name = place
+    part: Any = moved
+    for step in way:
+        part = part[step]
+    part[name] = value
+    return moved
+
+
+@pytest.mark.parametrize(
+    "document",
+    [turning({"brake": BRAKE}, **ROTOR), turning({"torque_Nm": 200.0, "count": 100}), typed({"brake": BRAKE}, **ROTOR)],
+)
+def test_a_tolerance_of_any_single_input_counts_in_every_check(document: Json, catalogue: Catalogue) -> None:
+    """At both ends of each input no check is worse than its worst case."""
+    counted = 0
+    for place, value in numbers_of(document):
+        path = ".".join(map(str, place)).removeprefix("duty_cycle.")
+        if not takes_tolerance(path):
+            continue
+        reply = answer(document | {"tolerances": {path: {"percent": 4}}}, catalogue)
+        for factor in (0.96, 1.04):
+            end = answer(moved_to(document, place, value * factor), catalogue)
+            for found in end["candidates"]:
+                for one in found["checks"]:
+                    worst = check(reply, found["designation"], one["code"])["worst"]
+                    counted += 1
+                    assert worst >= one["utilisation"] * (1 - 1e-12), (path, one["code"])
+    assert counted > 1000
+
+
+ONE_WAY = TURNING | {"mechanism": TURNING["mechanism"] | {"inertia_kgm2": 0.9}, "moves": TURNING["moves"][:2]}
+
+
+@pytest.mark.parametrize(
+    ("motion", "paths"),
+    [
+        (ONE_WAY, "moves.0.time_s moves.0.angle_deg moves.1.time_s mechanism.inertia_kgm2"),
+        (LIFTING, "moves.0.time_s moves.0.distance_mm moves.1.speed_mm_per_s mechanism.mass_kg"),
+    ],
+)
+def test_no_corner_of_a_sampled_motion_is_worse_than_its_worst_case(
+    motion: Json, paths: str, catalogue: Catalogue
+) -> None:
+    """Ways rise, times fall: 256 motions in four inputs are not near that corner."""
+    places = [tuple(int(step) if step.isdigit() else step for step in path.split(".")) for path in paths.split()]
+    document: Json = {"duty_cycle": {"motion": motion, "pause_s": 0.5}}
+    document["requirements"] = {"sizes": ["20A"], "ratios": [5]}
+    tolerances = {".".join(map(str, ("motion", *place))): {"percent": 4} for place in places}
+    reply = answer(document | {"tolerances": tolerances}, catalogue)
+    for factors in product((0.96, 1.04), repeat=len(places)):
+        corner = document
+        for place, factor in zip(places, factors, strict=True):
+            whole = ("duty_cycle", "motion", *place)
+            corner = moved_to(corner, whole, factor * dict(numbers_of(document))[whole])
+        for one in answer(corner, catalogue)["candidates"][0]["checks"]:
+            worst = check(reply, "HPN-20A-5", one["code"])
+            assert worst["exact"] is False
+            assert worst["worst"] >= one["utilisation"] * (1 - 1e-12), (one["code"], factors)
+
+
+def test_of_a_stop_by_the_brake_with_a_counterweight_nothing_is_proved(catalogue: Catalogue) -> None:
+    asked = {
+        "emergency_stop": {"brake": {"torque_Nm": 4.0}},
+        "requirements": {"motor": {"inertia_kgm2": 5e-4}, "sizes": ["20A"]},
+        "tolerances": {"motion.mechanism.mass_kg": {"percent": 5}},
+    }
+    for mass_kg, proved in ((30.0, False), (0.0, True)):
+        motion = LIFTING | {"mechanism": LIFTING["mechanism"] | {"counterweight_kg": mass_kg}}
+        reply = answer({"duty_cycle": {"motion": motion}} | asked, catalogue)
+        designation = reply["candidates"][0]["designation"]
+        assert check(reply, designation, "momentary_peak_torque")["exact"] == proved
+        assert check(reply, designation, "repeated_peak_torque")["exact"]

@@ -4,6 +4,7 @@ import itertools
 import math
 import random
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from starlette.testclient import TestClient
 
 from hpn.application import Application, InputError, MotorEntry, Pairing
 from hpn.catalogue import Catalogue, load_catalogue
+from hpn.catalogue.gear import Gear
 from hpn.engine.motors import with_figures
 from hpn.engine.notice import notice
 from hpn.engine.pairs import Pairs, pairs_of, table_of
@@ -24,6 +26,7 @@ from hpn.web.settings import Settings
 from tests.build import LIFTING, TURNING, Json, candidate, check, cycle, phase, worked_example
 from tests.conftest import Supplement
 from tests.property.draw import at_random, motions
+from tests.property.motors import motors
 from tests.reference import contract, motion
 from tests.reference.contract_gears import printed_gears
 from tests.reference.test_motion import CONTRACT, PENDULUM, SCREW, VISCOUS
@@ -32,24 +35,6 @@ from tests.unit.test_fitting_motors import CURVE, HEADER, OWN
 CATALOGUE = load_catalogue()
 CLOSE = 1e-12  # one engine either way: a last bit of its own in each of a few steps
 BRAKE = {"brake": {"torque_Nm": 8, "rise_time_s": 0.02, "load_torque_Nm": 5}, "count": 100}
-
-
-def motors(chance: random.Random, count: int, inertia: float = 1.0) -> list[MotorEntry]:
-    """Motors over three decades of torque and inertia; some figures of one of ten are not known."""
-    found = []
-    for number in range(count):
-        torque, speed = 10 ** chance.uniform(-0.5, 2), chance.uniform(1000, 8000)
-        figures = {
-            "maximum_speed_rpm": speed,
-            "rated_speed_rpm": speed / 2,
-            "rated_torque_Nm": torque,
-            "peak_torque_Nm": 3 * torque,
-            "inertia_kgm2": 10 ** chance.uniform(-5, -2) * inertia,
-            "weight_kg": round(chance.uniform(0.5, 9), 1),
-        }
-        known = {name: value for name, value in figures.items() if chance.random() < 0.95}
-        found.append(MotorEntry.model_validate({"designation": f"M {number}", **known}))
-    return found
 
 
 def paired(application: Json, some: list[MotorEntry], catalogue: Catalogue = CATALOGUE, **more: Any) -> Pairs:
@@ -78,7 +63,7 @@ APPLICATIONS: dict[str, Json] = {
 def test_a_pair_is_judged_as_the_selection_with_that_motor(
     supplemented: Supplement, application: Json, own: dict[str, str]
 ) -> None:
-    catalogue, some = supplemented(**own) if own else CATALOGUE, motors(random.Random(51), 12)
+    catalogue, some = supplemented(**own) if own else CATALOGUE, motors(random.Random(51), 12, curved=True)
     asked = Pairing.model_validate({"application": application, "motors": some}).application
     table = table_of(asked, some, catalogue)
     found = paired(application, some, catalogue).pairs + paired(application, some, catalogue, failing=True).pairs
@@ -130,7 +115,7 @@ def test_pairs_are_those_that_an_exhaustive_search_finds_in_its_order(soak: bool
     bare = (with_wishes(one, motor=None) for one in drawn)
     found_some = (one for one in bare if contract.answer(one, printed_gears()).selected)
     for application in itertools.islice(found_some, 4 if soak else 10):
-        some = motors(chance, 1000 if soak else 20)
+        some = motors(chance, 1000 if soak else 20, curved=True)
         expected = searched(application, some)
 
         found = paired(application, some)
@@ -173,10 +158,13 @@ def sampled(given: Json) -> tuple[Any, Any, Any, Any]:
     return columns[0], columns[1], columns[2], columns[3]
 
 
-def at_motor(samples: tuple[Any, Any, Any, Any], ratio: int, eta: float, inertia: float) -> tuple[float, float]:
+def at_motor(
+    samples: tuple[Any, Any, Any, Any], ratio: int, eta: float, inertia: float, without_load: float = 0.0
+) -> tuple[float, float]:
     """Peak and integral of the square of the torque at the motor, by the contract's words."""
     step, T, omega, alpha = samples
     torque = np.where(T * omega >= 0, T / eta, T * eta) / ratio + inertia * ratio * alpha
+    torque = torque + without_load * np.sign(omega)
     return float(np.abs(torque).max()), float((torque**2 * step).sum())
 
 
@@ -191,17 +179,30 @@ def test_thermal_load_and_peak_of_known_motions_are_those_of_their_samples(given
     check_by_samples(given_, 51)
 
 
-def check_by_samples(given_: Json, seed: int) -> None:
+@pytest.mark.parametrize("given_", [CONTRACT, PENDULUM, TURNING, LIFTING])
+def test_inertia_and_torque_without_load_of_a_gear_count_at_every_instant(
+    supplemented: Supplement, given_: Json
+) -> None:
+    """Both are at the input: J_g is added to that of the motor, T_0 is against the sense of its turning."""
+    catalogue = supplemented(gears=OWN)
+    check_by_samples(given_, 51, catalogue, [next(g for g in catalogue.gears if g.designation == "HPN-20A-5")])
+
+
+def check_by_samples(
+    given_: Json, seed: int, catalogue: Catalogue = CATALOGUE, gears: Sequence[Gear] = CATALOGUE.gears[:16]
+) -> None:
     chance, eta = random.Random(seed), 0.85
     some = [motor for motor in motors(chance, 6) if motor.inertia_kgm2 and motor.rated_torque_Nm]
     asked = {"duty_cycle": {"motion": given_, "pause_s": 0.7}, "requirements": {"efficiency": eta}}
-    table = table_of(Application.model_validate(asked), some, CATALOGUE)
+    table = table_of(Application.model_validate(asked), some, catalogue)
     samples = sampled(given_)
     cycle_s = samples[0].sum() + 0.7
     for row, motor in enumerate(some):
-        for column, gear in enumerate(table.gears.rows[:16]):
+        for gear in gears:
             assert motor.inertia_kgm2 is not None
-            peak, square = at_motor(samples, gear.ratio, eta, motor.inertia_kgm2)
+            column, own = table.gears.rows.index(gear), gear.inertia_kgm2 or 0.0
+            without_load = gear.no_load_torque_Nm or 0.0
+            peak, square = at_motor(samples, gear.ratio, eta, motor.inertia_kgm2 + own, without_load)
             thermal = math.sqrt(square / cycle_s) / (motor.rated_torque_Nm or math.nan)
             assert table.thermal[row, column] == pytest.approx(thermal, rel=1e-2, abs=1e-9)
             if motor.peak_torque_Nm and motor.maximum_speed_rpm and motor.rated_speed_rpm:

@@ -174,26 +174,12 @@ def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
 
     assert "Bearing life decides." in fast
     assert "Equivalent load: 76 % of the permissible constant load (500 rpm, 20000 h, L50)." in fast
-    assert "With f_w = 1.2: utilisation of the bearing 91.2 %." in fast
+    assert "With f_w" not in fast + slow
     assert "The largest single load decides." in slow
     life_factor = (100 / 50) ** (1 / 3)  # the handbook's maximum holds for 100 rpm
     assert f"Equivalent load: {44.4444 / life_factor:.1f} % of the constant load with the required life (50 rpm" in slow
     assert "44.4 % of the published maximum. Single load" in slow
     assert "Single load: 44.4 % of the published maximum." in slow
-
-
-def test_the_next_load_coefficient_is_said_to_use_what_a_selection_with_it_comes_to(catalogue: Catalogue) -> None:
-    """900 N for a short time and 300 N at 200 rpm: the single load governs, not the smaller equivalent one."""
-    phases = (phase(10, 200, 0.5, radial_N=900.0), phase(5, 200, 9.5, radial_N=300.0))
-    with_it = Application.model_validate(cycle(*phases, output_load={"load_coefficient": 1.2}))
-    gear = select(with_it, catalogue).candidate("HPN-20A-5")
-    assert gear is not None
-    used = max(check.utilisation or 0 for check in gear.checks if check.code.startswith("output_bearing"))
-
-    said = words(cycle(*phases), catalogue)
-
-    assert "The largest single load decides." in said
-    assert f"With f_w = 1.2: utilisation of the bearing {100 * used:.3g} %." in said
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ def test_numbers_follow_the_language() -> None:
     assert GERMAN.percent(0.0123) == f"1,2{GROUP}%"
     assert Reader().figure(12345.0) == f"12{GROUP}345"
     sentence = Sentence("Pause {pause}.", {"pause": Quantity(12345.6, "s", 6)})
-    assert GERMAN.told(sentence) == f"Pause 12.345,6{GROUP}s."
+    assert GERMAN.sentence(sentence) == f"Pause 12.345,6{GROUP}s."
 
 
 def test_a_number_in_a_sentence_has_the_whole_digits_that_it_has_in_a_table() -> None:

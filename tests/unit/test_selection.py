@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.candidates import Candidate, reason_of
 from hpn.engine.evaluation import Evaluation
-from hpn.engine.selection import CheckDefinition, Judged, Outcome, Selection, judge, select
+from hpn.engine.selection import CheckDefinition, Judgement, Outcome, Selection, judge, select
 from tests.build import Json, cycle, phase
 from tests.conftest import Supplement
 
@@ -191,7 +191,7 @@ def test_a_batch_keeps_one_evaluation_at_a_time(catalogue: Catalogue) -> None:
     """Those of ten thousand applications with every check would fill 250 MB."""
     alive: weakref.WeakSet[Evaluation] = weakref.WeakSet()
 
-    def number_alive(judged: Judged) -> int:
+    def number_alive(judged: Judgement) -> int:
         alive.add(judged.evaluation)
         return len(alive)
 

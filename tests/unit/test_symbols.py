@@ -8,7 +8,7 @@ import pytest
 
 from hpn.engine.checks import CHECKS
 from hpn.explain.drawings import svg
-from hpn.explain.drawings.words import said
+from hpn.explain.drawings.words import text_of
 from hpn.web.pages.templates import as_formula, with_symbols
 from hpn.words import symbols
 from hpn.words.quantities import QUANTITIES
@@ -39,7 +39,7 @@ def in_drawing(text: str) -> Set:
 
 
 def in_plot(text: str) -> Set:
-    return PLOT.findall(said(Sentence(text), Reader()))
+    return PLOT.findall(text_of(Sentence(text), Reader()))
 
 
 def in_report(text: str) -> Set:

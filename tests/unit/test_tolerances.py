@@ -3,8 +3,9 @@
 import pytest
 from pydantic import ValidationError
 
-from hpn.application import Application
+from hpn.application import Application, InputError
 from hpn.application.faults import faults_of
+from hpn.application.input_fields import takes_tolerance
 from hpn.catalogue import Catalogue
 from tests.build import TURNING, Json, answer, candidate, cycle, phase, worked_example
 
@@ -111,3 +112,31 @@ def test_a_motion_takes_tolerances_of_mechanism_and_moves_alone() -> None:
     assert Application.model_validate(
         motion | {"tolerances": {"motion.mechanism.inertia_kgm2": {"percent": 5}}}
     ).intervals
+
+
+def test_mass_and_inertia_keep_their_sign() -> None:
+    motion = {"duty_cycle": {"motion": TURNING}}
+    path = "motion.mechanism.inertia_kgm2"
+    assert faults(motion, {path: {"percent": 100}}) == [(path, "tolerance_sign")]
+
+
+PATHS = {
+    "motion.mechanism.inertia_kgm2": True,
+    "motion.moves.3.acceleration_mm_per_s2": True,
+    "motion.start_deg": True,
+    "motion.mechanism.type": False,
+    "motion.mechanism.time_s": False,
+    "motion.moves.0.name": False,
+}
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_a_common_tolerance_names_an_input_that_some_motion_has(path: str) -> None:
+    assert takes_tolerance(path) is PATHS[path]
+
+
+def test_a_corner_that_is_no_motion_names_the_input_that_says_so(catalogue: Catalogue) -> None:
+    """12 kg at 250 mm have 0.75 kg·m², more than 0.9 · 0.8."""
+    application = {"duty_cycle": {"motion": TURNING}, "tolerances": {"motion.mechanism.inertia_kgm2": {"percent": 10}}}
+    with pytest.raises(InputError, match=r"Moment of inertia includes the gravity mass and must be at least 0\.75"):
+        answer(application, catalogue)

@@ -45,6 +45,13 @@ def test_a_motor_that_can_put_more_than_the_repeated_peak_torque_on_its_gear_is_
     assert "torque limit to 32.5 Nm, 54.1 % of that peak" in text
 
 
+def test_torques_of_a_notice_have_four_digits_on_the_safe_side(catalogue: Catalogue) -> None:
+    """59.123456 Nm on a ratio of 4 are 236.493824 Nm."""
+    text = notices(answer(example(motor={"peak_torque_Nm": 59.123456}), catalogue))["gear_below_motor"]
+
+    assert "can put 236.5 Nm on HPN-20A-4" in text
+
+
 def test_a_motor_that_can_break_its_gear_is_told_in_stronger_words(catalogue: Catalogue) -> None:
     """T_M of 256 Nm is met by 64 Nm at the motor, and passed by one more."""
     met, passed = (
@@ -101,7 +108,7 @@ def test_a_cycle_that_needs_more_at_the_motor_than_the_limit_is_told_with_both_f
     reply = answer(cycle(phase(120, 10, 0.1), phase(10, 10, 9), requirements=gear), catalogue)
 
     text = notices(reply)["limit_below_need"]
-    assert "33.3333 Nm at the motor of HPN-20A-4" in text
+    assert "33.34 Nm at the motor of HPN-20A-4" in text
     assert "torque limit of 29.25 Nm" in text
 
 
@@ -136,7 +143,7 @@ def told(application: Json, catalogue: Catalogue, designation: str = RATED, lang
     assert found
     reader = Reader(language)
     lines = torque_limit_of(found, catalogue.by_designation[designation], asked).lines
-    return [reader.told(line).replace(GROUP, " ") for line in lines]
+    return [reader.sentence(line).replace(GROUP, " ") for line in lines]
 
 
 def test_the_line_of_the_verdict_has_the_share_of_the_motor_s_peak_where_there_is_one(catalogue: Catalogue) -> None:

@@ -35,6 +35,26 @@ def with_digit_altered(content: bytes, number: int) -> tuple[bytes, str]:
     raise IndexError(number)
 
 
+def with_blank_page(content: bytes) -> bytes:
+    """The report with a page behind it that has no text."""
+    with Pdf.open(BytesIO(content)) as pdf:
+        pdf.add_blank_page()
+        return _saved(pdf)
+
+
+def with_creator(content: bytes, name: str) -> bytes:
+    """The report with another name of the program that set it."""
+    with Pdf.open(BytesIO(content)) as pdf:
+        pdf.docinfo["/Creator"] = name
+        return _saved(pdf)
+
+
+def _saved(pdf: Pdf) -> bytes:
+    packed = BytesIO()
+    pdf.save(packed)
+    return packed.getvalue()
+
+
 def _instructions(page: Page) -> list[Any]:
     return list(parse_content_stream(page))
 

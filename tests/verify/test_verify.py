@@ -4,33 +4,33 @@ import json
 import random
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from zipfile import ZIP_DEFLATED, ZipFile
 
-import msgspec
 import openpyxl
 import pytest
+from msgspec import structs
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.cli import main
-from hpn.documents.answers import AxisQuestion, answers
-from hpn.documents.merge import resolve
 from hpn.engine.selection import encode
+from hpn.files.aas import submodel
 from hpn.files.aas.submodel import package
 from hpn.files.export import DIGITS
+from hpn.files.formats import FileFormat
 from hpn.files.report.pdf import pdf
 from hpn.files.workbook.workbook import workbook
-from hpn.verify import paper
-from hpn.verify.shown import UnreadableFileError
+from hpn.verify.shown import FileSubject, UnreadableFileError
 from hpn.verify.verify import verify
 from hpn.words.reader import Reader
-from tests.build import Json, worked_example
+from tests.build import Json
 from tests.report.cases import CASES, typed_export_of
-from tests.verify.altered import count_of_digits, with_digit_altered
+from tests.verify.altered import count_of_digits, with_blank_page, with_creator, with_digit_altered
 from tests.verify.earlier import VERSIONS, file_of
+from tests.verify.stripped import WITHOUT, rezipped
 
 ENGLISH = Reader(digits=DIGITS)
 GERMAN = Reader("de", ("lb_in", "lbf", "lb", "in", "degF"), DIGITS)
@@ -60,7 +60,7 @@ def test_one_altered_digit_anywhere_on_a_report_is_named(
 ) -> None:
     """Digits are altered by pikepdf, in the content of the page; the report to compare with is made once."""
     report = pdf(typed_export_of(CASES[case], catalogue), ENGLISH)
-    monkeypatch.setattr(paper.Format, "made", lambda *_: report)
+    monkeypatch.setattr(FileFormat, "made", lambda *_: report)
     count = count_of_digits(report)
     assert count > 500
     for number in random.Random(53).sample(range(count), 12):
@@ -110,15 +110,68 @@ def test_an_altered_answer_inside_a_file_is_named_though_the_lines_agree_with_it
     assert any(one.place.startswith("result.json/candidates/") for one in found)
 
 
-def rezipped(content: bytes, alter: Callable[[str, bytes], bytes], zeros: tuple[str, int] | None = None) -> bytes:
-    """The zipped file with its parts altered, and with a part of so many megabytes of zeros."""
+def test_a_digit_altered_on_the_report_in_a_package_is_named_with_its_page(catalogue: Catalogue) -> None:
+    """Text by its line; a page of drawings alone, as nothing has it there today."""
+
+    def with_digit(name: str, part: bytes) -> bytes:
+        return with_digit_altered(part, 100)[0] if name == "aasx/report.pdf" else part
+
+    def with_page(name: str, part: bytes) -> bytes:
+        return with_blank_page(part) if name == "aasx/report.pdf" else part
+
+    made = package(typed_export_of(CASES["example"], catalogue))
+    page = with_digit_altered(pdf(typed_export_of(CASES["example"], catalogue), ENGLISH), 100)[1]
+    assert {one.place for one in verify(rezipped(made, with_digit), catalogue).differs} == {f"report.pdf, {page}"}
+    assert [one.shown for one in verify(rezipped(made, with_page), catalogue).differs] == [
+        "a drawing, letter or note that differs from its text"
+    ]
+
+
+def test_a_package_is_the_same_where_its_maker_or_its_reader_can_set_no_report(
+    catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The report is of an extra of its own: without it a package has none, and one in it is named as not checked."""
+    export = typed_export_of(CASES["example"], catalogue)
+    whole = package(export)
+    with monkeypatch.context() as without:
+        without.setattr(submodel, "has_extra", lambda extra: False)
+        bare, read = package(export), verify(whole, catalogue)
+    assert (read.differs, read.unchecked) == ((), ("report.pdf: not checked without the extra report",))
+    assert (verify(bare, catalogue).differs, verify(bare, catalogue).unchecked) == ((), ())
+
+
+def test_drawings_of_another_program_are_listed_as_not_checked(
+    catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    report = pdf(typed_export_of(CASES["example"], catalogue), ENGLISH)
+    monkeypatch.setattr(FileFormat, "made", lambda *_: with_creator(report, "another"))
+    verdict = verify(report, catalogue)
+    assert (verdict.differs, len(verdict.unchecked)) == ((), 1)
+    assert verdict.unchecked[0].startswith("all pages: what is drawn")
+
+
+def test_a_decimal_comma_that_moves_in_a_german_text_is_named(catalogue: Catalogue) -> None:
+    """78,1 % is no 781 %: a comma is a mark between thousands in English alone."""
+
+    def alter(name: str, part: bytes) -> bytes:
+        moved = part.replace(b"mit 78,1", b"mit 781", 1)
+        assert name != "aasx/data.xml" or moved != part
+        return moved if name == "aasx/data.xml" else part
+
+    found = verify(rezipped(package(typed_export_of(CASES["example"], catalogue)), alter), catalogue).differs
+    assert len(found) == 1
+    assert "781" in found[0].shown
+
+
+def test_a_value_that_moves_to_another_column_is_named(catalogue: Catalogue) -> None:
+    book = openpyxl.load_workbook(BytesIO(workbook(typed_export_of(CASES["example"], catalogue), ENGLISH)))
+    row = next(row for row in book.worksheets[0].iter_rows() if row[-1].value is None and row[-2].value is None)
+    last = max(cell.column for cell in row if cell.value is not None)
+    row[last].value, row[last - 1].value = row[last - 1].value, None
     packed = BytesIO()
-    with ZipFile(BytesIO(content)) as source, ZipFile(packed, "w", ZIP_DEFLATED) as target:
-        for name in source.namelist():
-            target.writestr(name, alter(name, source.read(name)))
-        if zeros:
-            target.writestr(zeros[0], bytes(zeros[1] * 1_000_000))
-    return packed.getvalue()
+    book.save(packed)
+    places = {one.place for one in verify(packed.getvalue(), catalogue).differs}
+    assert f"{book.worksheets[0].title}, row {row[0].row}" in places
 
 
 # --- Files of earlier versions ----------------------------------------------------------------------------------------
@@ -160,44 +213,55 @@ def test_a_report_that_leads_to_a_saved_selection_needs_its_application(catalogu
     with pytest.raises(UnreadableFileError, match="--application"):
         verify(report, catalogue)
     saved = json.loads(file_of("1.0.0", "selection.json"))
-    verdict = verify(report, catalogue, Application.model_validate(saved["application"]))
+    verdict = verify(report, catalogue, FileSubject(Application.model_validate(saved["application"])))
     assert verdict.differs == ()
 
 
-# --- JSON -------------------------------------------------------------------------------------------------------------
+CHOSEN = "HPN-32A-5"
+"""A gear of the worked example that is not the foremost."""
 
 
-def test_an_answer_is_read_by_its_link(catalogue: Catalogue) -> None:
-    answer = json.loads(encode(typed_export_of(worked_example(), catalogue).selection))
-    assert verify(json.dumps(answer).encode(), catalogue).differs == ()
-    answer["duty"]["average_torque_Nm"] *= 1 + 1e-9
-    found = verify(json.dumps(answer).encode(), catalogue).differs
-    assert [(one.place, one.reasons) for one in found] == [("/duty/average_torque_Nm", ("file",))]
+@pytest.mark.parametrize("kind", MAKERS)
+def test_a_file_of_an_earlier_version_that_shows_another_gear_than_the_foremost_is_the_same(
+    kind: str, catalogue: Catalogue, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As 1.1.0 wrote them: a package without its title block; report and workbook with their link alone, of a saved
+    selection, whose JSON names the gear, or of a link with the gear in it.
+    """
+    export = replace(typed_export_of(CASES["example"], catalogue), chosen=CHOSEN)
+    assert export.selection.foremost.designation != CHOSEN
+    saved = tmp_path / "saved.json"
+    answered = json.loads(encode(export.selection))
+    application = export.application.model_dump(mode="json", exclude_none=True)
+    saved.write_text(json.dumps({"application": application, "designation": CHOSEN, "result": answered}))
+    link = f"https://plm.example{export.selection.link}&gear={CHOSEN}"
+    for address, words in (("https://plm.example/selections/7", ["--application", str(saved)]), (link, [])):
+        file = tmp_path / f"file.{kind}"
+        file.write_bytes(WITHOUT[kind](MAKERS[kind](replace(export, link=address), ENGLISH)))
+        code = main(["verify", str(file), *words])
+        assert (code, "differs" in (shown := capsys.readouterr()).out, shown.err) == (0, False, "")
 
 
-OPEN: Json = {"duty_cycle": {"phases": []}}
+def test_a_package_of_an_earlier_version_whose_axis_had_no_link_is_the_same(catalogue: Catalogue) -> None:
+    """Axes of machines were packed without one; a report made of it has no code to scan."""
+    export = typed_export_of(CASES["example"], catalogue)
+    axis = replace(export, link="", selection=structs.replace(export.selection, link=""))
+
+    verdict = verify(WITHOUT["aasx"](package(axis)), catalogue)
+
+    assert (verdict.differs, verdict.same > 90) == ((), True)
 
 
-def machine_of(catalogue: Catalogue) -> Json:
-    """A machine of two axes as `GET /machines/{id}` gives it."""
-    common: Json = {"requirements": {"life_h": 20000}}
-    own = [worked_example(requirements={"ratios": [5]}), OPEN]
-    asked = [AxisQuestion(resolve(part, common)) for part in own]
-    axes = [
-        {"number": place, "application": part, "resolved": one.resolved.whole, "answer": msgspec.to_builtins(answer)}
-        for place, (part, one, answer) in enumerate(zip(own, asked, answers(asked, catalogue), strict=True), 1)
-    ]
-    return {"title": "Line", "common": common, "axes": axes}
-
-
-def test_a_machine_is_calculated_axis_by_axis(catalogue: Catalogue) -> None:
-    machine = machine_of(catalogue)
-    verdict = verify(json.dumps(machine).encode(), catalogue)
-    assert (verdict.differs, verdict.unchecked) == ((), ())
-    machine["axes"][0]["answer"]["weight_kg"] = 2.7
-    machine["axes"][0]["resolved"]["requirements"]["life_h"] = 10000
-    found = verify(json.dumps(machine).encode(), catalogue).differs
-    assert {one.place for one in found} == {"/axes/0/answer/weight_kg", "/axes/0/resolved/requirements/life_h"}
+def test_a_tolerance_of_an_application_that_leaves_out_defaults_is_the_same(catalogue: Catalogue) -> None:
+    """Files carry defaults, such as the pause, that a program need not send; the worst case has them either way."""
+    sent: Json = {"duty_cycle": {"phases": [{"torque_Nm": 40, "speed_rpm": 250, "duration_s": 2}]}}
+    export = typed_export_of(sent | {"tolerances": {"torque_Nm": {"percent": 10}}}, catalogue)
+    for content in (pdf(export, ENGLISH), workbook(export, ENGLISH), package(export), encode(export.selection)):
+        assert verify(content, catalogue).differs == ()
+    answer = json.loads(encode(export.selection))
+    answer["tolerance"]["case"]["duty_cycle"]["phases"][0]["torque_Nm"] += 1
+    (found,) = verify(json.dumps(answer).encode(), catalogue).differs
+    assert found.place == "/tolerance/case/duty_cycle/phases/0/torque_Nm"
 
 
 # --- The command ------------------------------------------------------------------------------------------------------
@@ -227,6 +291,8 @@ def test_the_command_says_what_differs_by_its_exit_code(tmp_path: Path, capsys: 
         *(b"", b"no file of ours", b"[]", b"{}", b'{"axes": [1]}', b'{"result": {}, "application": {}}'),
         *(b"%PDF-1.7", b"%PDF-1.7\n" + b"1 0 obj" * 50, b"PK", b"PK\x03\x04xl/workbook.xml", b"[" * 100_000),
         *(b'{"candidates": [], "link": "/?T=1&n=1&t=1"}', b'{"axes": [{"application": {"duty_cycle": 7}}]}', b"\xff"),
+        *(b'{"candidates": [], "link": "http://["}', b'{"axes": [{"application": {}, "answer": {"unknown": 7}}]}'),
+        b'{"axes": [{"application": {}, "answer": {"unknown": [{}]}}]}',
     ],
 )
 def test_what_is_no_file_of_ours_is_a_sentence(

@@ -18,12 +18,12 @@ def read(*lines: str, assumed: tuple[str, ...] = WIRE, **said: Any) -> Table:
 
 
 def asked(table: Table) -> list[str]:
-    """Questions that are open."""
+    """Open questions of a table."""
     return [question.text for question in table.questions]
 
 
 def offered(table: Table, name: str) -> Choice:
-    """A choice that a table leaves."""
+    """Choice that a table leaves open."""
     choice = table.choice(name)
     assert choice is not None
     return choice

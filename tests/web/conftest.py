@@ -1,4 +1,4 @@
-"""One service for the tests of the REST interface, with a database of its own."""
+"""Service for the tests of the REST interface, with its own database."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -13,21 +13,21 @@ from hpn.web.settings import Settings
 
 @pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory) -> FastAPI:
-    """The application as shipped, on a database file of its own."""
+    """Application as shipped, with its own database file."""
     file = tmp_path_factory.mktemp("service") / "selections.sqlite3"
     return create_app(Settings(database_url=f"sqlite:///{file}"))
 
 
 @pytest.fixture(scope="session")
 def api(service: FastAPI) -> Iterator[TestClient]:
-    """A client that shows a mistake of the service as an answer 500, as its users would see it."""
+    """Client that gets an internal error as an answer 500, as users would."""
     with TestClient(service, raise_server_exceptions=False) as client:
         yield client
 
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[TestClient]:
-    """A client that follows no redirect."""
+    """Client that follows no redirect."""
     app = create_app()
     yield TestClient(app, follow_redirects=False)
     app.state.pools.close()  # files are read in a process
@@ -35,7 +35,7 @@ def client() -> Iterator[TestClient]:
 
 @pytest.fixture(scope="module")
 def keeping(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of a service with a store of its own, which nothing else has written."""
+    """Client of a service with its own empty store."""
     file = tmp_path_factory.mktemp("pairs") / "store.sqlite3"
     app = create_app(Settings(database_url=f"sqlite:///{file}", log_level="error"))
     with TestClient(app) as found:
@@ -44,12 +44,12 @@ def keeping(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 @pytest.fixture(scope="session")
 def document(service: FastAPI) -> dict[str, Any]:
-    """The OpenAPI document."""
+    """OpenAPI document of the service."""
     return service.openapi()
 
 
-PART = 8
-"""`make test` tries every operation of the API with one in so many of the fuzz's examples; `make soak` with all."""
+PART = 16
+"""`make test` tries 1 in PART of the fuzz's examples on each operation of the API; `make soak` tries all."""
 
 
 @pytest.fixture(autouse=True)

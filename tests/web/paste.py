@@ -1,4 +1,4 @@
-"""Tables to paste, and the parts of a preview that the tests read."""
+"""Tables to paste, and readers of the parts of a preview."""
 
 import re
 from urllib.parse import parse_qs, urlsplit
@@ -9,7 +9,7 @@ LONG = "".join(f"40.{k % 10};{250 + k % 90};0.25\n" for k in range(4000))
 HTMX = {"HX-Request": "true"}
 
 ASKED = re.compile(r'class="question asked">\s*<legend>(.*?)</legend>|<li>(.*?)</li>|<p class="error">(.*?)</p>')
-"""Open questions of a preview, at choices and about columns, or its problem."""
+"""Open questions of a preview, on choices and columns, or its problem."""
 
 
 def query_of(location: str) -> dict[str, list[str]]:
@@ -17,12 +17,12 @@ def query_of(location: str) -> dict[str, list[str]]:
 
 
 def cells(page: str) -> list[str]:
-    """Cells of the rows of a preview as they are read; what is written there otherwise stands in grey before."""
+    """Cells of a preview's rows as they are read; the written text, if it differs, precedes them in grey."""
     return re.findall(r"<td>(?:\s*<small[^>]*>[^<]*</small>)?\s*(?:<mark>)?([^<]+?)\s*(?:</mark>)?</td>", page)
 
 
 def chosen(page: str) -> dict[str, str]:
-    """Value of each select of a preview; blank where it is asked."""
+    """Value of each select of a preview; blank for an open question."""
     selects = re.findall(r'<select name="(\w+)".*?</select>', page, re.DOTALL)
     found = re.findall(r'<select name="(\w+)"[^>]*>.*?<option(?: value="([^"]*)")? selected', page, re.DOTALL)
     assert len(found) == len(selects)
@@ -30,7 +30,7 @@ def chosen(page: str) -> dict[str, str]:
 
 
 def of(page: str) -> str:
-    """Digest that the choices of a preview are tied to."""
+    """Digest of the table that the choices of a preview belong to."""
     found = re.search(r'name="of" value="(\w+)"', page)
     assert found
     return found[1]

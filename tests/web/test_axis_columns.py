@@ -1,4 +1,4 @@
-"""Columns of tables of axes: which input each holds, in which unit, and what is asked about them."""
+"""Columns of tables of axes: the input and unit of each, and the questions about them."""
 
 from itertools import product
 
@@ -258,7 +258,7 @@ def test_a_column_with_one_possible_meaning_is_not_asked(heading: str, role: str
     ],
 )
 def test_the_shafts_centre_is_read_by_size_too(heading: str, cell: str, taken: object) -> None:
-    """A cell that is neither a number nor numbers by size is named in a note, and goes on as it is written."""
+    """A cell that is neither a number nor numbers by size is named in a note, and its text stays as written."""
     lines = [f"Axis\tTorque [Nm]\tSpeed [rpm]\tDuration [s]\t{heading}", f"A\t10\t1\t1\t{cell}"]
     table = read(*lines)
 

@@ -1,10 +1,9 @@
-"""The page of an axis: own and inherited values, saving back, and two people on one axis."""
+"""Page of an axis: own and inherited values, saving, and two people on one axis."""
 
 import re
 from collections.abc import Iterator
 from html import unescape
 from html.parser import HTMLParser
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
@@ -28,9 +27,9 @@ AXES: list[Json] = [
 HTMX = {"HX-Request": "true", "HX-Target": "section#result"}
 
 
-@pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
-    settings = Settings(database_url=f"sqlite:///{tmp_path}/kept.sqlite3")
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    settings = Settings(database_url=f"sqlite:///{tmp_path_factory.mktemp('axes')}/kept.sqlite3")
     with TestClient(create_app(settings), follow_redirects=False) as client:
         yield client
 
@@ -49,7 +48,7 @@ def axis_of(client: TestClient, place: str) -> Json:
 
 
 class Fields(HTMLParser):
-    """Fields of the form of the page, as a browser sends them."""
+    """Fields of the page's form, as a browser sends them."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -196,7 +195,7 @@ def test_a_form_that_is_sent_twice_is_saved_once(client: TestClient, machine: st
     place = f"{machine}/axes/1"
     html = client.get(place).text
     assert saved(client, place, html, T="24").status_code == 303
-    assert saved(client, place, html, T="24").status_code == 303  # the first answer was lost on its way
+    assert saved(client, place, html, T="24").status_code == 303  # a repeat, as if the first answer was lost
 
 
 def test_a_pasted_table_stays_on_the_axis(client: TestClient, machine: str) -> None:
@@ -206,6 +205,33 @@ def test_a_pasted_table_stays_on_the_axis(client: TestClient, machine: str) -> N
     assert answer.status_code == 303 and answer.headers["location"].startswith(f"{place}?")
     own = fields_of(client.get(answer.headers["location"]).text)
     assert [text for name, text in own if name == "T"] == ["10"] and ("u", "1") in own and ("wo", "Lh") in own
+
+
+def test_an_axis_says_which_others_have_its_gear(client: TestClient) -> None:
+    """Two ways that agree: the page of an axis, and the order of gears over REST; removed axes are in neither."""
+    same, other = cycle(phase(20, 300)), cycle(phase(200, 100))
+    axes = [{"name": f"Lift {n}", "quantity": n, "application": same} for n in range(1, 8)]
+    axes += [{"name": "Press", "application": other}, {"application": other}, {"name": "open", "application": {}}]
+    machine = client.post("/api/v1/machines", json={"title": "Packing line", "axes": axes}).json()["url"]
+    assert client.delete(f"/api/v1{machine}/axes/7").status_code == 204
+    lifts, presses = client.get(f"/api/v1{machine}/gears").json()["gears"]
+
+    def said(number: int) -> str:
+        page = client.get(f"{machine}/axes/{number}").text
+        found = re.search(r'<section[^>]*aria-labelledby="alike-heading".*?</section>', page, re.DOTALL)
+        return " ".join(re.sub("<[^>]+>", " ", unescape(found[0])).split()) if found else ""
+
+    gear = lifts["designation"]
+    assert lifts["quantity"] == 21
+    assert said(2) == (f"In this machine 21 gears of this kind Lift 1, Lift 3, Lift 4 and 2 more axes have {gear} too.")
+    assert f'href="{machine}?gear={gear}"' in client.get(f"{machine}/axes/2").text
+    assert (
+        said(9) == f"In this machine {presses['quantity']} gears of this kind Press has {presses['designation']} too."
+    )
+    assert said(8).endswith(f"Axis 9 has {presses['designation']} too.")
+    assert said(10) == ""
+    edited = client.get(f"{machine}/axes/2?T=200&n=100&t=1", headers=HTMX).text
+    assert presses["designation"] in edited and "Press, Axis 9" in edited
 
 
 @pytest.mark.parametrize("place", ["axes/4", "axes/0", "axes/x", "axes/99999999999"])
@@ -251,3 +277,53 @@ def test_a_link_to_another_application_keeps_what_is_inherited() -> None:
     assert ("wo", "Lh") in carried_over(
         now, pairs(own | {"requirements": {"utilisation": 0.9}}), pairs_of_own(own), {"u", "Lh"}
     )
+
+
+# --- Revisions --------------------------------------------------------------------------------------------------------
+
+
+def frozen_as(client: TestClient, machine: str, label: str, **block: str) -> None:
+    api = f"/api/v1{machine}"
+    condition = {"If-Match": client.get(api).headers["etag"]}
+    answer = client.post(f"{api}/revisions", json={"label": label, **block}, headers=condition)
+    assert answer.status_code == 201, answer.text
+
+
+def test_an_axis_names_the_revisions_of_its_machine_below_its_input(client: TestClient, machine: str) -> None:
+    place = f"{machine}/axes/2"
+    assert 'class="chain' not in client.get(place).text  # nothing is saved yet
+
+    frozen_as(client, machine, "A", author="MA", note="first issue")
+    frozen_as(client, machine, "B")
+    page = client.get(place).text
+    chain = page[page.index('<ol class="chain') : page.index("Compare revisions")]
+
+    assert page.index('id="application"') < page.index('<ol class="chain') < page.index("</form>", page.index("chain"))
+    assert re.findall(r'href="([^"]*)"', chain) == [
+        f"{machine}?revision=B#axis-2",
+        f"{machine}?revision=A#axis-2",
+        f"{machine}/revisions",
+    ]
+    assert "first issue" in chain and ", MA" in chain and chain.count('aria-current="true"') == 1
+    assert 'id="axis-2"' in client.get(f"{machine}?revision=A").text
+
+
+def test_a_refused_save_keeps_the_revisions_and_the_axes_with_the_same_gear(client: TestClient, machine: str) -> None:
+    frozen_as(client, machine, "A")
+    refused = client.post(f"{machine}/axes/1/save", data={"T": "x", "n": "300", "t": "1"})
+
+    assert "needs correction" in refused.text and f'href="{machine}?revision=A#axis-1"' in refused.text
+
+
+def test_a_part_of_the_page_of_an_axis_keeps_the_revisions_that_it_lacks(client: TestClient, machine: str) -> None:
+    frozen_as(client, machine, "A")
+    part = client.get(f"{machine}/axes/2", headers={"HX-Request": "true"}).text
+
+    assert '<div id="revisions" hx-preserve>' in part and 'class="chain' not in part
+
+
+def test_the_axis_of_a_selection_leads_to_the_revisions_of_the_selection(client: TestClient) -> None:
+    saved = client.post("/api/v1/selections", json={"application": worked_example()}).json()["id"]
+    page = client.get(f"/machines/{saved}/axes/1").text
+
+    assert f'href="/selections/{saved}?revision=saved"' in page and f'href="/selections/{saved}/revisions"' in page

@@ -1,4 +1,4 @@
-"""Tables of axes as spreadsheets write them: no number is silently another one, and what has two readings is asked."""
+"""Tables of axes from spreadsheets: no number silently changes, and ambiguous cells lead to a question."""
 
 from typing import Any
 
@@ -38,8 +38,8 @@ def test_cells_in_a_unit_of_something_else_are_said_before_their_axes_are_reject
     table = read(HEAD, "A;40 lb;100;1", "B;40;10 1/s;1", "C;40 Nm;100;300 ms", "D;n. b.;100;1")
 
     assert [note.text for note in table.notes] == [
-        "Cells that are not numbers, such as n. b. in row 5: 1. Their axes are rejected.",
-        "Cells with a unit that does not fit their column, such as 40 lb in row 2: 2. Their axes are rejected.",
+        "Cells that are not numbers, such as n. b. in row 5: 1. Their axes stay open.",
+        "Cells with a unit that does not fit their column, such as 40 lb in row 2: 2. Their axes stay open.",
     ]
     assert [axis["torque_Nm"] for axis in table.axes] == [["40 lb"], [40], [40], ["n. b."]]
 
@@ -101,7 +101,7 @@ def test_two_decimal_marks_in_a_table_are_asked_and_what_no_longer_is_a_number_i
     comma = read(HEAD, *rows, decimal=",")
     assert [axis["duration_s"] for axis in comma.axes] == [[1.5], [1125.0], ["0.5"]]
     assert [note.text for note in comma.notes][-1] == (
-        "Cells that are not numbers, such as 0.5 in row 4: 1. Their axes are rejected."
+        "Cells that are not numbers, such as 0.5 in row 4: 1. Their axes stay open."
     )
     sure = read(HEAD, "A;12,5;100;1,5", "C;2;100;0.5")
     assert asked(sure) == [] and sure.axes[1]["duration_s"] == ["0.5"]
@@ -271,7 +271,7 @@ def test_times_of_axes_that_go_back_are_asked_with_the_row_where_they_do() -> No
     assert "In row 5 they fall, from 5 to 3." in asked(table)[0]
     assert "in row 5" in asked(read(*shift, times="starts"))[0]
     wrong = read(*shift, times="starts", falls="error").axes
-    assert [axis["duration_s"] for axis in wrong] == [[2, 3, -2], [4]]  # the fleet rejects the first, and says why
+    assert [axis["duration_s"] for axis in wrong] == [[2, 3, -2], [4]]  # the fleet rejects the first with a reason
 
 
 def test_a_counter_of_axes_goes_on_and_phases_of_one_stamp_are_left_out() -> None:

@@ -34,7 +34,7 @@ def test_a_number_that_a_workbook_shows_in_thousands_is_asked() -> None:
 
 
 def sheet_of(format_: str, *values: str) -> Table:
-    """A table whose last column holds these numbers of a workbook in a format, read as weight and efficiency."""
+    """Table of a workbook; its columns of weight (format 0.0) and efficiency (`format_`) hold the texts as numbers."""
     book = Workbook()
     sheet: Any = book.active
     sheet.append([*HEAD.split(";"), "m", "eta"])
@@ -58,7 +58,7 @@ HEADED = (*HEAD.split(";"), "Lebensdauer [h]")
 
 
 def merged(*rows: tuple[object, ...], cells: str) -> Table:
-    """A table of a workbook, some of whose cells are merged."""
+    """Table of a workbook with merged cells."""
     book = Workbook()
     sheet: Any = book.active
     for row in (HEADED, *rows):

@@ -1,4 +1,4 @@
-"""`POST /api/v1/select/batch`: one line per item, and a bad item that hurts nobody."""
+"""`POST /api/v1/select/batch`: one line per item; a faulty item affects no other."""
 
 from typing import Any
 
@@ -104,7 +104,7 @@ def test_items_of_many_kinds_are_each_answered_as_if_alone(api: TestClient) -> N
         assert line["suitable"] == len(suitable(single))
         assert line["link"] == single["link"]
         if line["selected"]:
-            # padded sums may be taken in another order
+            # padded sums may have another order
             assert line["utilisation"] == pytest.approx(single["candidates"][0]["utilisation"], rel=1e-13)
 
 

@@ -1,4 +1,4 @@
-"""The section on the output bearing: loads and sizes with bars, what the shaft may carry, and a missing x_c."""
+"""Section on the output bearing: loads and sizes with bars, permitted loads of the shaft, and a missing x_c."""
 
 import re
 from collections.abc import Iterator
@@ -34,7 +34,7 @@ def words(part: str) -> str:
 
 
 def table(part: str, name: str) -> list[list[str]]:
-    """Cells of the table with a caption, row by row, numbers without the space between their thousands."""
+    """Cells of the table with a caption, row by row; numbers without spaces between thousands."""
     found = re.search(rf"<table(?:(?!</table>).)*?<caption>\s*{name}.*?</table>", part, re.DOTALL)
     assert found, name
     rows = re.findall(r"<tr.*?</tr>", found[0], re.DOTALL)
@@ -53,7 +53,7 @@ def test_each_load_stands_with_what_the_bearing_feels_of_it(client: TestClient) 
 
 
 def test_a_load_given_nowhere_is_asked_for_by_speed_and_life_alone(client: TestClient) -> None:
-    """Half the life allows the load times the cube root of two, as far as the published limit: ISO 281, exponent 3."""
+    """Half the life allows the cube root of two times the load, up to the published limit: ISO 281, exponent 3."""
     part = section(client.get(CYCLE + "&at_n=200&at_life=40000").text)
     twice = section(client.get(CYCLE + "&at_n=200&at_life=80000").text)
 

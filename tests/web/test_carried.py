@@ -1,4 +1,4 @@
-"""Inputs that the form does not show pass every door and come back the same: motions, phases that vary, motors."""
+"""Inputs that the form does not show survive every door unchanged: motions, varying phases, motors."""
 
 import json
 from html.parser import HTMLParser
@@ -41,7 +41,7 @@ def body_of(application: Application) -> dict[str, Any]:
 
 
 class Fields(HTMLParser):
-    """Fields that the form of the page submits, as a browser gathers them, and its method."""
+    """Fields that the page's form submits, as a browser collects them, and its method."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -77,14 +77,14 @@ class Fields(HTMLParser):
         self.area = "" if tag == "textarea" else self.area
 
     def handle_data(self, data: str) -> None:
-        """Take the text of a field, without the line break that its tag is followed by."""
+        """Take the text of a field, without the line break after its tag."""
         if self.area:
             name, text = self.pairs.pop()
             self.pairs.append((name, text + (data if text else data.removeprefix("\n"))))
 
 
 def opened(api: TestClient, application: Application, cookies: str = "") -> tuple[str, str, list[tuple[str, str]]]:
-    """The page of a link: its text, the method of its form, and what that submits."""
+    """Page of a link: its text, the method of its form, and the fields that the form submits."""
     page = api.get(to_link(application), headers={"Cookie": cookies})
     assert page.status_code == 200
     fields = Fields()

@@ -1,4 +1,4 @@
-"""The catalogue to read, over HTTP."""
+"""Pages of the catalogue over HTTP."""
 
 import dataclasses
 import gzip
@@ -34,7 +34,7 @@ def test_every_gear_has_a_page_that_the_catalogue_links(client: TestClient, cata
 
 
 def test_each_published_figure_stands_in_one_group_of_the_page_of_a_gear(catalogue: Catalogue) -> None:
-    """A range stands for both of its ends."""
+    """A range counts for both of its ends."""
     grouped = [line.code for _, lines in groups_of(catalogue.gears[0]) for line in lines]
     ranges = {"length": {"length_min_mm", "length_max_mm"}}
     ranges["ambient_temperature"] = {"ambient_temperature_minimum_degC", "ambient_temperature_maximum_degC"}
@@ -215,7 +215,7 @@ def corners(page: str) -> list[list[str]]:
 
 
 def test_which_load_the_shaft_may_carry_is_answered_at_a_typed_speed_life_and_coefficient(client: TestClient) -> None:
-    """The page draws the answer of the API, in whichever units it was typed."""
+    """The page draws the answer of the API, for input in any units."""
     asked = {"speed_rpm": 150, "life_h": 30_000, "load_coefficient": 1.3}
     curves = client.get("/api/v1/bearing-envelopes/20A", params=asked).json()["curves"]
     plain = client.get("/catalogue/HPN-20A-5", params={"at_n": "150", "at_life": "30000", "at_fw": "1.3"}).text

@@ -1,4 +1,4 @@
-"""Every page says in one sentence what it is, in the language of its reader."""
+"""Every page describes itself in one sentence, in its reader's language."""
 
 import re
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ PAGES = (
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of a service with one saved selection."""
+    """Client of a service with one saved selection."""
     folder = tmp_path_factory.mktemp("descriptions")
     settings = Settings(database_url=f"sqlite:///{folder}/store.sqlite3")
     with TestClient(create_app(settings), headers={"Accept": "text/html"}) as client:

@@ -1,4 +1,4 @@
-"""Motion, torques and speeds, and motors on the pages: live, saved, in parts, with a list of motors and without."""
+"""Motion, torques, speeds and motors on the pages: live, saved, in parts, with and without a list of motors."""
 
 import re
 from collections.abc import Iterator
@@ -38,7 +38,7 @@ def supplied(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 def drive(page: str) -> str:
-    """The section of a page."""
+    """Section on the drive of a page."""
     found = re.search(r'<section class="section panel drive".*?</section>', page, re.DOTALL)
     assert found
     return found[0]
@@ -59,12 +59,12 @@ def test_a_motion_is_drawn_with_its_phases_and_both_planes_at_once(client: TestC
     assert "which needs a motion and the motor’s inertia" in words(part)
 
 
-def test_typed_phases_without_a_motor_have_the_plane_of_the_gear_and_a_line_on_motors(client: TestClient) -> None:
+def test_typed_phases_without_a_motor_have_the_plane_of_the_gear_and_a_line_on_pairs(client: TestClient) -> None:
     part = drive(client.get(TYPED).text)
 
     assert part.count(DRAWN) == 1
-    assert part.count("<table") == 2  # resonance and position, which need no motor
-    assert "list them in motors.csv of a catalogue supplement" in words(part)
+    assert part.count("<table") == 2  # resonance and position need no motor
+    assert "every gear with every motor of a list of yours" in words(part)
 
 
 def test_an_edit_brings_the_section_where_it_is_in_sight_and_else_when_it_is_asked_for(client: TestClient) -> None:

@@ -1,4 +1,4 @@
-"""Loads in their envelopes on the pages: at once and without script, with and without a load, live and saved."""
+"""Loads in their envelopes on the pages: without script, with and without a load, live and saved."""
 
 import re
 from collections.abc import Iterator
@@ -25,14 +25,14 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 def section(page: str, name: str) -> str:
-    """The figure or section of a page with an id."""
+    """Figure or section of a page by its id."""
     found = re.search(rf'<(figure|section)[^>]* id="{name}".*?</\1>', page, re.DOTALL)
     assert found, name
     return found[0]
 
 
 def phases(part: str, kind: str) -> list[str]:
-    """Places of the phases that the elements of a kind belong to."""
+    """Numbers of the phases of all elements of a kind."""
     return re.findall(rf'class="{kind}[^"]*"[^>]* data-phase="([^"]*)"', part)
 
 
@@ -64,7 +64,7 @@ def test_each_envelope_says_what_it_stands_on(client: TestClient, model: str, ba
 
 
 def drawings_in(part: str) -> list[str]:
-    """Drawings of a figure, for a narrow and for a wide place."""
+    """Drawings of a figure: one for a narrow and one for a wide place."""
     return re.findall(r"<svg.*?</svg>", part, re.S)
 
 
@@ -139,7 +139,7 @@ def test_the_saved_page_has_the_chart_of_the_cycle_the_envelope_and_the_life_of_
 
 @pytest.mark.parametrize(("own", "thin"), [(1, {1.2, 1.5}), (1.2, {1, 1.5}), (1.3, {1, 1.2, 1.5})])
 def test_the_page_of_a_gear_draws_each_curve_of_the_api_once(client: TestClient, own: float, thin: set[float]) -> None:
-    """The one asked for is the strong line, also where it is 1, 1.2 or 1.5."""
+    """The requested coefficient is the strong line, also for 1, 1.2 or 1.5."""
     page = client.get(f"/catalogue/HPN-20A-5?at_n=900&at_fw={own}").text
     asked = {"load_coefficient": own, "speed_rpm": 900}
     curves = client.get("/api/v1/bearing-envelopes/20A", params=asked).json()["curves"]

@@ -59,12 +59,12 @@ def machine(api: TestClient, service: FastAPI) -> str:
 
 @pytest.fixture
 def address(saved: str, machine: str) -> "Address":
-    """Makes an address of the path of a route."""
+    """Function that makes an address from a route's path."""
     return Address(saved, machine)
 
 
 class Address:
-    """Addresses that lead somewhere, one for each route."""
+    """Valid addresses, one for each route."""
 
     def __init__(self, saved: str, machine: str) -> None:
         self.values = {
@@ -82,7 +82,7 @@ class Address:
         }
 
     def __call__(self, path: str) -> str:
-        """Address of a path, with the query that it needs."""
+        """Address of a path with its query."""
         place = "?".join(filter(None, (path, QUERIES.get(path))))
         for name, value in self.values.items():
             place = place.replace(name, value)
@@ -98,12 +98,12 @@ def answers(api: TestClient, saved: str, machine: str) -> dict[str, Any]:
 
 
 def coding(path: str) -> dict[str, str]:
-    """A key that is another each time makes the calculator's page longer or shorter once it is compressed."""
+    """Header with the coding of a path: none for the calculator's page, as a random key varies its packed length."""
     return {"Accept-Encoding": "identity" if path in ("/", "/selections/{id}/copy") else "gzip"}
 
 
 def headers_of(answer: Any) -> dict[str, str]:
-    """Headers of an answer that are the same each time."""
+    """Headers of an answer that are the same for every request."""
     return {name: value for name, value in answer.headers.items() if name not in OF_EACH_REQUEST}
 
 
@@ -112,7 +112,7 @@ def test_the_walk_meets_many_routes() -> None:
     assert set(QUERIES) <= set(PATHS)
 
 
-@pytest.mark.parametrize("path", [path for path in PATHS if path != "/metrics"])  # each answer tells of the one before
+@pytest.mark.parametrize("path", [path for path in PATHS if path != "/metrics"])  # its answer counts the previous one
 def test_head_has_the_headers_of_get_and_no_body(
     api: TestClient, answers: dict[str, Any], address: "Address", path: str
 ) -> None:
@@ -166,7 +166,7 @@ def test_posted_json_and_problems_are_compressed_and_lines_are_not(api: TestClie
 
 
 WITHOUT_BODY = {"/machines/{machine}/delete", "/fleets", "/fleets/{rest:path}"}
-"""Routes that answer before a body is read, or without one."""
+"""Routes that answer before they read a body, or without one."""
 
 FORMS = {str(route.path) for route in ALL if "POST" in (route.methods or ())} - WITHOUT_BODY
 BODIES = [

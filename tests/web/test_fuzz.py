@@ -1,4 +1,4 @@
-"""Thousands of requests that the OpenAPI document allows, and as many that it forbids: never a server error."""
+"""Thousands of requests that the OpenAPI document allows, and as many that it forbids: no server error."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -9,12 +9,12 @@ from fastapi import FastAPI
 from hypothesis import HealthCheck, given, settings
 from schemathesis import Case, GenerationMode
 from schemathesis.checks import not_a_server_error
+from schemathesis.python.asgi import shutdown_lifespans
 from schemathesis.specs.openapi.checks import (
     content_type_conformance,
     response_schema_conformance,
     status_code_conformance,
 )
-from starlette.testclient import TestClient
 
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
@@ -28,7 +28,7 @@ OPERATIONS: dict[str, dict[str, Any]] = {
 
 
 def modes(operation: dict[str, Any]) -> list[GenerationMode]:
-    """Requests to try: forbidden ones too where there is a body or a query, since any text may stand in a path."""
+    """Modes of requests to try: forbidden ones only with a body or query, as a path may contain any text."""
     places = {parameter["in"] for parameter in operation.get("parameters", ())}
     forbids = "requestBody" in operation or "query" in places
     return list(GenerationMode) if forbids else [GenerationMode.POSITIVE]
@@ -39,17 +39,17 @@ SLOW = ("pdf", "xlsx", "aasx")
 
 
 def examples(label: str) -> int:
-    """Several thousand in all, most of them where an application is read; few where each makes a whole file."""
+    """Number of examples of an operation: most for those that read an application, few for those that make a file."""
     return 15 if label.endswith(SLOW) else 350 if label.endswith(MUCH) else 100
 
 
 @pytest.fixture(scope="module")
 def schema(tmp_path_factory: pytest.TempPathFactory) -> Iterator[schemathesis.BaseSchema]:
-    """The document of a service with a database of its own, which runs while its operations are tried."""
+    """Document of a service with its own database; schemathesis starts the service at its first request."""
     file = tmp_path_factory.mktemp("fuzz") / "selections.sqlite3"
     app: FastAPI = create_app(Settings(database_url=f"sqlite:///{file}", log_level="error"))
-    with TestClient(app):
-        yield schemathesis.openapi.from_asgi("/openapi.json", app)
+    yield schemathesis.openapi.from_asgi("/openapi.json", app)
+    shutdown_lifespans()
 
 
 @pytest.mark.parametrize(

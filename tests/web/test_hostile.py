@@ -1,4 +1,4 @@
-"""Input made to cost much: it is refused before it does, and never with a server error."""
+"""Input made to be expensive: it is refused before it costs time or memory, and never with a server error."""
 
 import html
 import re
@@ -42,7 +42,7 @@ def test_of_an_object_with_more_fields_than_any_no_field_is_looked_at(api: TestC
 
     assert reply.status_code == 422
     assert "150000 fields" in reply.json()["detail"]
-    assert time.process_time() - start < 0.5  # to list every field as unknown takes several times as long
+    assert time.process_time() - start < 0.5  # listing every field as unknown takes several times as long
 
 
 @pytest.mark.parametrize("path", ["/", "/paste", "/selections", "/cycle.csv", "/reader"])
@@ -57,7 +57,7 @@ def test_a_quoted_cookie_costs_no_more_than_another(api: TestClient) -> None:
     for path in ("/robots.txt", "/api/v1/catalogue/HPN-20A-5"):
         assert api.get(path, headers={"Cookie": 'a="' + r"\"" * 3900 + '"'}).status_code == 200
 
-    assert time.process_time() - start < 0.1  # a hundred times what it takes; by the square of the quotes it is 0.2 s
+    assert time.process_time() - start < 0.1  # a hundred times its usual time; quadratic in the quotes it takes 0.2 s
 
 
 def test_of_a_list_parameter_no_more_is_kept_than_it_takes_to_refuse_it(api: TestClient) -> None:
@@ -141,7 +141,7 @@ def test_heading_beyond_all_length_is_asked_about_in_short(api: TestClient, head
 
 
 def test_no_page_of_the_longest_cycle_has_3_MB(api: TestClient, soak: bool) -> None:
-    """In the short form a cycle of a fifth, whose pages have less than the fixed 500 kB and a fifth of the rest."""
+    """The short form has a fifth of the phases; its limit is below the fixed 500 kB plus a fifth of the rest."""
     count, most = (10_000, 3_000_000) if soak else (2000, 900_000)
     names = ("torque_Nm", "speed_rpm", "duration_s", "radial_N", "axial_N")
     rows = [[value + k / 7e4 for value in (40.0, 250.0, 1.0, 90.0, 50.0)] for k in range(count)]
@@ -156,7 +156,7 @@ def test_no_page_of_the_longest_cycle_has_3_MB(api: TestClient, soak: bool) -> N
 
     assert [page.status_code for page in pages + files] == [200] * 6
     assert max(len(page.content) for page in pages) < most
-    assert len(api.get(saved).content) < 500_000  # drawings in both sizes and the table of 200 loads included
+    assert len(api.get(saved).content) < 500_000  # including drawings in both sizes and the table of 200 loads
     assert _link(copied.text) == _link(posted.text)
     assert files[0].json()["duty_cycle"]["phases"] == application["duty_cycle"]["phases"]
     kept = api.post("/selections", data={"link": _link(posted.text), "once": ""}, follow_redirects=False)
@@ -164,7 +164,7 @@ def test_no_page_of_the_longest_cycle_has_3_MB(api: TestClient, soak: bool) -> N
 
 
 def _link(page: str) -> str:
-    """The link of the form that saves."""
+    """Link in the form that saves."""
     found = re.findall(r'name="link" value="(/\?T=[^"]*)"', page)
     assert len(found) == 1, "each copy is a megabyte"
     return html.unescape(found[0])
@@ -172,7 +172,7 @@ def _link(page: str) -> str:
 
 @pytest.mark.parametrize("mark", ["", ".", "-"])
 def test_digits_without_end_cost_their_length_and_not_its_square(api: TestClient, mark: str) -> None:
-    """20,000 digits in front of what is no digit held the process for 20 s, and a link may have three times as many."""
+    """20,000 digits before another character blocked the process for 20 s; a link may have three times as many."""
 
     def seconds(digits: int) -> float:
         start = time.process_time()

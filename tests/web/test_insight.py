@@ -33,7 +33,7 @@ def compared(html: str) -> list[str]:
 
 
 def pins(html: str) -> list[str]:
-    """Pins that come with the next answer."""
+    """Pins in the form."""
     return re.findall('name="pin" id="[^"]*" value="([^"]*)"', html)
 
 
@@ -196,7 +196,7 @@ def test_typing_brings_neither_the_form_nor_what_is_folded_away(client: TestClie
     assert 'id="calculation"' in html
     assert "<math" not in html
     assert "data-figure" not in html
-    assert html.count('name="link" value="/?T=40&amp;') == 1  # what files are made of follows all the same
+    assert html.count('name="link" value="/?T=40&amp;') == 1  # the link for files comes, too
 
 
 def test_an_unfolded_part_comes_alone_or_with_the_result(client: TestClient) -> None:
@@ -237,7 +237,7 @@ def test_an_edit_of_a_long_cycle_is_as_short_as_one_of_a_short_cycle_but_for_its
     html = changes(client, RESULT, query=query).text
     assert "<math" not in html
     assert html.count(f'value="{query.replace("&", "&amp;")}"') == 1
-    assert html.count(query.replace("&", "&amp;")[1:]) <= 6  # the pages that a short one is handed on to
+    assert html.count(query.replace("&", "&amp;")[1:]) <= 6  # the pages that a short one is carried to
     assert (
         len(html) < len(short) + 6 * 1.4 * min(len(query), 4000) + 1.4 * len(query) + 25_000
     )  # 200 steps of the chart
@@ -250,7 +250,7 @@ def test_a_part_of_a_long_cycle_is_fetched_with_the_fields_of_the_form(client: T
     assert place
     part = client.post("/", data={"phases": rows}, headers=HTMX | {"HX-Target": "section#calculation"})
     assert "<math" in part.text
-    assert f'data-part="{place[1]}"' in part.text  # of the same answer, which the script looks at
+    assert f'data-part="{place[1]}"' in part.text  # of the same answer, which the script checks
 
 
 def test_a_form_with_a_fault_has_no_parts(client: TestClient) -> None:

@@ -1,4 +1,4 @@
-"""Labels of a selection ride along: in the address, through every edit, and never in the canonical link."""
+"""Labels of a selection are carried in the address and through every edit, but never in the canonical link."""
 
 import html
 import re
@@ -21,7 +21,7 @@ ADDRESS = "/?" + urlencode(GIVEN)
 
 
 def edit(api: TestClient, pairs: list[tuple[str, str]], target: str = "section#result") -> str:
-    """Address after an edit of the form, as htmx is told it."""
+    """Address that htmx gets after an edit of the form."""
     reply = api.get("/?" + urlencode(pairs), headers={"HX-Request": "true", "HX-Target": target})
     return str(reply.headers["hx-push-url"])
 
@@ -182,7 +182,7 @@ def test_a_selection_saved_before_opens_is_found_and_may_be_renamed(api: TestCli
     found = api.get(f"/api/v1{place}")
     assert (found.status_code, found.json()["title"]) == (200, text)
     assert len(api.get("/api/v1/selections", params={"reference": text}).json()["selections"]) == 1
-    # A form sends both back: what stays as it is, is no obstacle to the other.
+    # A form sends both fields: an invalid but unchanged one does not block the other.
     assert api.post(f"{place}/rename", data={"title": "new", "ref": text}, follow_redirects=False).status_code == 303
     assert api.patch(f"/api/v1{place}", json={"reference": "new"}).status_code == 200
     assert api.delete(f"/api/v1{place}").status_code == 204

@@ -1,4 +1,4 @@
-"""Limits of size and time have clear answers, and a mistake of the service is a problem too."""
+"""Limits of size and time have clear answers, and an internal error is a problem, too."""
 
 import asyncio
 from typing import Any
@@ -20,7 +20,7 @@ PATHS = ("/api/v1/select", "/api/v1/select/batch")
 
 @pytest.fixture(scope="module")
 def tight() -> FastAPI:
-    """A service that takes 1000 bytes within a twentieth of a second."""
+    """Service that accepts 1000 bytes within a twentieth of a second."""
     return create_app(Settings(maximum_body_bytes=1000, maximum_batch_body_bytes=1000, body_seconds=0.05))
 
 
@@ -44,7 +44,7 @@ def test_a_body_of_exactly_the_limit_is_read(tight: FastAPI) -> None:
 
 
 def call(app: FastAPI, path: str, messages: list[Message], headers: list[tuple[bytes, bytes]]) -> tuple[int, bytes]:
-    """One request as a server would send it; after the last message nothing more arrives."""
+    """Status and body of a request, passed on as by a server; nothing arrives after the last message."""
     sent: list[Message] = []
     waiting = iter(messages)
 
@@ -124,7 +124,7 @@ def test_a_mistake_of_the_service_is_a_problem_without_a_trace(monkeypatch: pyte
 
 
 def test_requests_at_once_get_their_own_answers(api: TestClient, soak: bool) -> None:
-    """Restrictions by the hundred through eight threads; each has candidates of its own."""
+    """Hundreds of restrictions through eight threads; each has its own candidates."""
     from concurrent.futures import ThreadPoolExecutor
 
     ratios = [3, 4, 5, 7, 10, 15, 20, 25, 30, 35]

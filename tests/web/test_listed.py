@@ -1,4 +1,4 @@
-"""How the page lists candidates, which ties it names, and whose life the verdict calls the shortest."""
+"""Order of the page's candidates, ties that it names, and the component with the shortest life in the verdict."""
 
 import pytest
 
@@ -11,7 +11,7 @@ EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200"
 
 
 def answer_to(query: str, catalogue: Catalogue) -> LiveResult:
-    """Page of a link."""
+    """Result of a link."""
     form, answer = answered(parse(pairs_of(query)), catalogue)
     assert answer, form.problems
     return answer
@@ -67,7 +67,7 @@ def test_the_shortest_life_is_the_gears_or_its_bearings(catalogue: Catalogue, qu
     assert life and life.check == check
     lives = [value for value in (chosen.life_L10_h, chosen.bearing_life_L10_h) if value is not None]
     assert chosen.life_L10_h is not None
-    bearing = chosen.bearing_life_L50_h  # judged as L50, which is what is shown of it
+    bearing = chosen.bearing_life_L50_h  # judged and shown as L50
     assert life.life_h == (bearing if check == "output_bearing_life" else chosen.life_L10_h)
     assert min(lives) == (chosen.bearing_life_L10_h if check == "output_bearing_life" else chosen.life_L10_h)
 

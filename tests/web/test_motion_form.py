@@ -1,4 +1,4 @@
-"""The form of a motion without a browser: switching, rows, bodies, errors, and phases that are taken over."""
+"""Form of a motion without a browser: switching, rows, bodies, errors, and taking over of phases."""
 
 import re
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ def fields_of(page: str) -> list[tuple[str, str]]:
 
 
 def pressed(api: TestClient, query: str, *presses: str, cookies: str = "") -> str:
-    """Page after one button after the other, as without script; each sends all that the form has."""
+    """Page after pressing buttons one after the other, as without script; each sends the whole form."""
     page = api.get(f"/?{query}", headers={"Cookie": cookies})
     for press in presses:
         page = api.get(f"/?{urlencode([*fields_of(page.text), ('do', press)])}", headers={"Cookie": cookies})
@@ -131,7 +131,7 @@ def test_another_linear_mechanism_keeps_what_it_has_too(api: TestClient) -> None
 
 def test_figures_of_another_geometry_are_never_taken_for_this_one(api: TestClient) -> None:
     page = pressed(api, TURN, "way:ball_screw")
-    assert given(page, "J", "ms", "mt", "mv", "Tf") == [("mv", "trapezoidal")]  # its own beginning
+    assert given(page, "J", "ms", "mt", "mv", "Tf") == [("mv", "trapezoidal")]  # its own start
 
 
 def test_phases_beside_a_motion_are_parted_by_the_switch(api: TestClient) -> None:
@@ -220,7 +220,7 @@ def test_a_figure_that_a_move_lacks_is_named_at_its_cell_and_in_the_result(
 ) -> None:
     page = api.get(f"/?mech=rotary&J=0.8&{move}").text
     assert re.search(rf'id="{place}"[^>]*aria-invalid="true"', page)
-    assert f'<li data-field="{place}">' in page[page.index('id="result"') :]
+    assert f'<li data-field="{place}"' in page[page.index('id="result"') :]
 
 
 @pytest.mark.parametrize(
@@ -240,6 +240,24 @@ def test_an_error_of_a_move_stands_below_the_table_and_is_tied_to_its_cell(
     assert re.search(rf'<a href="#{place}">[^<]*, move 2</a>|<a href="#{place}">[^<]*, move 1</a>', below)
     assert re.search(rf'id="e-{place}">[^<]*{re.escape(said)}', below)
     assert re.search(rf'id="{place}"[^>]*aria-invalid="true" aria-describedby="e-{place}"', page)
+
+
+@pytest.mark.parametrize(
+    ("query", "place", "is_asked_for"),
+    [
+        ("T=18&n=150&t=1&dt=belt", "f-dd", True),
+        ("T=18&n=150&t=1&dt=belt&dd=x", "f-dd", False),
+        (TURN.replace("J=0.8&", ""), "f-J", True),
+        (TURN.replace("mv=dwell", "mv="), "mv-1", True),
+    ],
+)
+def test_an_input_that_is_missing_is_asked_for_and_a_wrong_one_refused(
+    api: TestClient, query: str, place: str, is_asked_for: bool
+) -> None:
+    page = api.get(f"/?{query}").text
+    assert bool(re.search(rf'id="{place}"[^>]*data-missing aria-invalid="true"', page)) is is_asked_for
+    assert ("Still to enter:" in page[page.index('class="named"') :]) is is_asked_for
+    assert ("Not recalculated: one input is missing." in page) is is_asked_for
 
 
 def test_an_error_of_a_mechanism_stands_beside_its_field(api: TestClient) -> None:

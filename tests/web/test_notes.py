@@ -1,4 +1,4 @@
-"""Notes by what is done about them: each with its reason, what it touches, and an action that works without script."""
+"""Notes grouped by their use: each with its reason, its subject, and an action that works without script."""
 
 import re
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ def notes(page: str) -> str:
 
 
 def test_every_notice_has_its_group_and_says_what_it_touches() -> None:
-    codes = [code for code in NOTICES if code not in ("gears_unrated", "gear_far_below_motor")]  # sentences of others
+    codes = [code for code in NOTICES if code not in ("gears_unrated", "gear_far_below_motor")]  # parts of others
     for group in note_groups([Notice(code, "") for code in codes], None):
         for note in group.notes:
             assert note.touches, note.notice.code
@@ -43,9 +43,9 @@ def test_every_notice_has_its_group_and_says_what_it_touches() -> None:
     [
         ("A is so: b follows.", "A is so", "B follows."),
         ("A (eq. 17.9) is so; η is 1.", "A (eq. 17.9) is so", "η is 1."),
-        ("HPN-40A is not rated. The table is missing.", "HPN-40A is not rated.", "The table is missing."),
+        ("HPN-40A is not rated. The table is missing.", "HPN-40A is not rated", "The table is missing."),
         ("A is so: T_R / η is more.", "A is so", "T_R / η is more."),
-        ("Es gilt z. B. Gleichung 3.", "Es gilt z. B. Gleichung 3.", ""),
+        ("Es gilt z. B. Gleichung 3.", "Es gilt z. B. Gleichung 3", ""),
     ],
 )
 def test_a_notice_is_parted_into_claim_and_reason(text: str, head: str, reason: str) -> None:
@@ -70,7 +70,7 @@ def test_a_missing_input_is_typed_beside_its_note_and_stands_in_the_form_then(cl
 
 
 def test_it_is_read_in_the_units_of_the_reader(client: TestClient) -> None:
-    """As the form's own field would be: a German comma, and a life in years of 8766 h."""
+    """As in the form's own field: a German comma, and a life in years of 8766 h."""
     german = client.get(OFF_CENTRE + "&written=de&xc=&give-xc=21%2C5", headers=EDIT | {"Accept-Language": "de"})
 
     assert "&xc=21.5" in german.headers["HX-Push-Url"]

@@ -1,4 +1,4 @@
-"""The OpenAPI document: valid, complete, and true to what the service answers."""
+"""OpenAPI document: valid, complete, and in agreement with the service's answers."""
 
 import copy
 import json
@@ -35,7 +35,7 @@ FULL = worked_example(
 
 
 def validator(document: Json, name: str, *, closed: bool = True) -> jsonschema_rs.Validator:
-    """Validator of one schema of the document; `closed` refuses fields that the schema doesn't know."""
+    """Validator of a schema of the document; `closed` refuses unknown fields."""
     components = copy.deepcopy(document["components"])
     if closed:
         for schema in components["schemas"].values():
@@ -51,7 +51,7 @@ def validator(document: Json, name: str, *, closed: bool = True) -> jsonschema_r
 
 
 def fields(document: Json) -> Iterator[tuple[str, str, Json]]:
-    """Every field of every schema: schema, name, entry."""
+    """Yield schema name, name and entry of every field of every schema."""
     for schema_name, schema in document["components"]["schemas"].items():
         for name, entry in schema.get("properties", {}).items():
             yield schema_name, name, entry
@@ -243,7 +243,7 @@ def test_every_reply_is_described_by_its_model_alone(document: Json) -> None:
 
 
 OF_TOLERANCES = {"tolerance", "worst", "exact"}
-"""Fields of an answer to an application with tolerances alone."""
+"""Fields that only an answer to an application with tolerances has."""
 
 
 def test_a_required_field_is_never_null_and_an_optional_reply_field_may_be_left_out(document: Json) -> None:

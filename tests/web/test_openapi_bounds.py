@@ -1,4 +1,4 @@
-"""Bounds in the OpenAPI document are those that are applied: of bodies, motions, queries and lists."""
+"""Bounds in the OpenAPI document equal the applied ones: of bodies, motions, queries and lists."""
 
 import math
 import re
@@ -14,7 +14,7 @@ from tests.web.test_openapi_truth import Json, Path, operations, with_value
 
 
 def resolved(document: Json, schema: Json) -> Json:
-    """A schema without its reference, and without that it may be null."""
+    """Schema with its reference resolved, and without the option null."""
     union = (*schema.get("anyOf", ()), *schema.get("oneOf", ()))
     options = [option for option in union if option.get("type") != "null"]
     schema = options[0] if options else schema
@@ -22,7 +22,7 @@ def resolved(document: Json, schema: Json) -> Json:
 
 
 def leaves(document: Json, schema: Json, path: Path = ()) -> Iterator[tuple[Path, Json]]:
-    """Every part of a schema with its path, lists by their first item."""
+    """Yield path and schema of every part of a schema; a list is represented by its first item."""
     schema = resolved(document, schema)
     yield path, schema
     for name, entry in schema.get("properties", {}).items():
@@ -32,7 +32,7 @@ def leaves(document: Json, schema: Json, path: Path = ()) -> Iterator[tuple[Path
 
 
 def tries(schema: Json, there: Any = None) -> Iterator[tuple[Any, bool]]:
-    """Values at every bound of a schema, which it allows, and just beyond, which it refuses."""
+    """Yield values at every bound of a schema with True, and values just beyond with False."""
     whole = schema.get("type") == "integer"
     for name, beyond in (("minimum", -math.inf), ("maximum", math.inf)):
         if name in schema:
@@ -62,7 +62,7 @@ def at(body: Json, path: Path) -> Any:
 
 
 def refusals(response: Any, pointer: str) -> list[str]:
-    """Errors of the models at a place; that catalogue, list or table has no such entry is no bound."""
+    """Errors of the models at a pointer, without those for unknown entries of a catalogue, list or table."""
     assert response.status_code in (200, 201, 404, 413, 422), response.text
     errors = response.json().get("errors", []) if response.status_code in (413, 422) else []
     found = [error["detail"] for error in errors if error["pointer"] == pointer]
@@ -74,6 +74,7 @@ def refusals(response: Any, pointer: str) -> list[str]:
 
 
 INERTIAS = {"inertia_kgm2": 0.001, "inertia_ratio": 5}
+POINTS = [{"speed_rpm": n, "continuous_Nm": 1, "peak_Nm": 3} for n in (0, 6000)]
 WHOLE: Json = FULL | {
     "requirements": FULL["requirements"]
     | {
@@ -81,7 +82,7 @@ WHOLE: Json = FULL | {
         "sizes": ["20A"],
         "load_inertia_kgm2": 1,
         "position_radius_mm": 9,
-        "motor": FULL["requirements"]["motor"] | INERTIAS,
+        "motor": FULL["requirements"]["motor"] | INERTIAS | {"curve": POINTS},
     },
     "duty_cycle": FULL["duty_cycle"]
     | {"phases": [phase | {"radial_N": 1, "axial_N": 1} for phase in FULL["duty_cycle"]["phases"]]},
@@ -113,14 +114,17 @@ def test_each_bound_of_a_body_is_the_one_that_is_applied(api: TestClient, docume
     address, body = BODIES[name]
     tried = 0
     for path, schema in leaves(document, document["components"]["schemas"][name]):
-        # Tried by themselves: applications, and a code that has to be one besides being no longer than it may.
+        # Tried elsewhere: applications, and a code, which must be valid besides its maximum length.
         if (
             path[:1] in (("application",), ("ordering_code",))
             or path[:2] in TRIED_BY_THEMSELVES
             or path[-1:] == ("designation",)
         ):
             continue
-        # Bounded by their phase besides.
+        # Also bounded by the other figures of their curve.
+        if "curve" in path and path[-1] in ("speed_rpm", "continuous_Nm"):
+            continue
+        # Also bounded by their phase.
         if {"peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm", "least_torque_Nm"} & {*path} and "phases" in path:
             continue
         for value, allowed in tries(schema, at(body, path)):
@@ -137,9 +141,9 @@ def test_each_bound_of_a_motion_is_the_one_that_is_applied(
 ) -> None:
     tried = 0
     for path, schema in leaves(document, document["components"]["schemas"][name]):
-        if path[:2] == ("moves", 0):  # each bounds the others
+        if path[:2] == ("moves", 0):  # the figures of a move bound one another
             continue
-        # An inertia is bounded by the gravity mass besides, so that it is tried without one.
+        # An inertia is also bounded by the gravity mass, so it is tried without one.
         given = WEIGHTLESS if name == "RotaryMotion" and path[-1:] == ("inertia_kgm2",) else motion
         for value, allowed in tries(schema, at(given, path)):
             response = api.post("/api/v1/select", json={"duty_cycle": {"motion": with_value(given, path, value)}})

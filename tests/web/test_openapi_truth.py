@@ -79,23 +79,23 @@ OPERATIONS = {
     "selectBatch": "POST /api/v1/select/batch",
     "sizeFleet": "POST /api/v1/fleet",
 }
-"""Generated clients name their functions by these: rename none without a new version of the API."""
+"""Operation ids, which name the functions of generated clients: rename none without a new version of the API."""
 
 
 def operations(document: Json) -> Iterator[tuple[str, str, Json]]:
-    """Method, path and entry of every operation."""
+    """Yield method, path and entry of every operation."""
     for path, entries in document["paths"].items():
         for method, entry in entries.items():
             yield method.upper(), path, entry
 
 
 def at(path: str) -> str:
-    """Address of an operation; nothing is saved there."""
+    """Address of an operation on an id without a document."""
     return path.format(size="20A", designation="HPN-20A-5", id="A" * 22, number=1, label="A")
 
 
 def with_value(body: Json, path: Path, value: Any) -> Json:
-    """A copy of a body with another value at a path."""
+    """Copy of a body with another value at a path."""
     changed: Any = copy.deepcopy(body)
     place = changed
     for step in path[:-1]:
@@ -154,7 +154,7 @@ def test_every_content_type_of_a_body_is_taken_and_no_other(api: TestClient, doc
 
 OF_HTTP = {"cache-control", "content-encoding", "content-length", "content-type", "vary", "x-accel-buffering"}
 OF_HTTP |= {name.lower() for name in SECURITY_HEADERS}
-"""Headers that say nothing of the selection."""
+"""Headers without information on the selection."""
 
 
 def test_every_answer_is_in_the_document_with_each_of_its_headers(api: TestClient, document: Json) -> None:
@@ -211,7 +211,7 @@ def test_refusals_that_any_address_may_give_are_in_the_document(service: FastAPI
 
 
 def with_keys() -> TestClient:
-    """Client without a key of a service that wants one for every calculation."""
+    """Client without a key, of a service that requires one for calculations."""
     _, pair = new_key("plm")
     return TestClient(create_app(Settings(api_keys=pair, guarded="calculator")))
 

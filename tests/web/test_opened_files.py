@@ -1,4 +1,4 @@
-"""Files that the page opens and files that it gives away, over HTTP."""
+"""Files that the page opens and files that it offers, over HTTP."""
 
 import io
 import json
@@ -157,7 +157,7 @@ def test_where_all_places_are_taken_the_file_is_to_be_sent_again_and_the_form_is
 
 @contextmanager
 def taken_places(client: TestClient) -> Iterator[None]:
-    """Every place for files is taken by others."""
+    """Take all places of the pool for files."""
     pool, places = state_of(client).pools["files"], PLACES["files"]
     with ExitStack() as stack:
         for _ in range(sum(places)):
@@ -166,5 +166,5 @@ def taken_places(client: TestClient) -> Iterator[None]:
 
 
 def quoted(link: str) -> str:
-    """A link as it stands in the form."""
+    """Link in the form's HTML."""
     return f'value="{escape(link)}"'

@@ -1,4 +1,4 @@
-"""The page and its assets over HTTP."""
+"""Live page and its assets over HTTP."""
 
 import gzip
 import re
@@ -28,13 +28,13 @@ def client() -> Iterator[TestClient]:
 
 
 def heading(html: str) -> str:
-    """Designation in big type, or nothing."""
+    """Designation in big type; blank without one."""
     found = re.search(r'<h2 class="designation"[^>]*>\s*(?:<a [^>]*>)?([^<\s]+)', html)
     return found[1] if found else ""
 
 
 def lasting(html: str) -> str:
-    """A page without the keys that its buttons to save have for once."""
+    """Page without the one-time keys of its buttons to save."""
     return re.sub(r'(name="once" value=")[A-Za-z0-9_-]{22}"', r'\1"', html)
 
 
@@ -45,7 +45,7 @@ def test_page_without_a_query_is_the_worked_example(client: TestClient) -> None:
     first, save = r'<section class="first".*?</section>\s*', r'class="(quiet|primary)( script-only" title="Keeps)'
     told = re.sub(first, "", bare.text, flags=re.S)
     assert told != bare.text and re.search(first, linked.text) is None
-    # what a first visit is told, and how Save looks beside it, is all that differs
+    # only the text for a first visit, and the look of Save beside it, differ
     assert re.sub(save, r'class="\2', lasting(told)) == re.sub(save, r'class="\2', lasting(linked.text))
 
 
@@ -67,7 +67,7 @@ def test_page_agrees_with_the_API(client: TestClient) -> None:
     reply = client.post("/api/v1/select", json=body).json()
     assert heading(page) == reply["selected"]
     listed = re.findall(r'<tr id="row-(HPN-\w+-\d+)" class="(\w+)', page)
-    # Rejected gears stand by size, in the order of the nearest of each.
+    # Rejected gears are listed by size, sizes in the order of their nearest gear.
     sizes = list(dict.fromkeys(c["size"] for c in reply["candidates"] if c["status"] == "unsuitable"))
     ranked = [c for c in reply["candidates"] if c["status"] == "suitable"]
     rejected = [c for size in sizes for c in reply["candidates"] if (c["size"], c["status"]) == (size, "unsuitable")]
@@ -171,7 +171,7 @@ def test_long_cycle_within_the_limit_is_answered_without_repeating_it_per_gear(c
     query = "&".join(["T=40&n=250&t=0.3"] * 1500)
     response = client.get("/?" + query, headers=HTMX)
     assert response.status_code == 200
-    # Once in the form that saves and makes the files, never once more for each file or gear.
+    # Once in the form that saves and makes files, not again for each file or gear.
     assert response.text.count("T=40&amp;n=250&amp;t=0.3") == 1500
     assert '<button type="submit" form="application" name="gear" value="HPN-32A-5"' in response.text
 
@@ -185,7 +185,7 @@ def test_assets_are_hashed_immutable_and_precompressed(client: TestClient) -> No
         assert plain.headers["Cache-Control"] == "public, max-age=31536000, immutable"
         assert re.search(r"\.[0-9a-f]{8}\.", address)
         if address.endswith(".woff2"):
-            continue  # packed in itself
+            continue  # its format is compressed
         for coding, unpack in (("br", brotli.decompress), ("gzip", gzip.decompress)):
             with client.stream("GET", address, headers={"Accept-Encoding": coding}) as packed:
                 assert packed.headers["Content-Encoding"] == coding
@@ -195,7 +195,7 @@ def test_assets_are_hashed_immutable_and_precompressed(client: TestClient) -> No
 
 
 def test_typeface_is_light_goes_with_its_licence_and_is_no_original_name(client: TestClient) -> None:
-    """Upright and italic are 40 kB at most; the licence keeps the name of the original for itself."""
+    """Upright and italic have 40 kB at most; the licence reserves the name of the original."""
     page = client.get("/").text
     sheet = re.search(r'href="(/static/page\.[^"]+\.css)"', page)
     assert sheet
@@ -228,7 +228,7 @@ def test_a_new_row_leaves_the_title_block_folded_and_a_gear_that_nobody_makes_is
 
 
 def test_first_view_stays_light(client: TestClient) -> None:
-    """60 kB for everything but the plots and the letters, the page itself compressed as a proxy would."""
+    """60 kB for everything but plots and fonts, with the page compressed as by a proxy."""
     page = client.get("/")
     addresses = set(re.findall(r'(?:href|src)="(/static/[^"]+(?<!\.woff2))"', page.text))
     total = len(gzip.compress(page.content))
@@ -239,7 +239,7 @@ def test_first_view_stays_light(client: TestClient) -> None:
 
 
 def figure(html: str, name: str) -> str:
-    """Text of the verdict on a figure."""
+    """Text of a figure of the verdict."""
     found = re.search(rf"<dt[^>]*>{name}.*?</dt><dd>(.*?)</dd>", html, re.S)
     assert found, name
     return re.sub("<[^>]*>", "", found[1]).strip()

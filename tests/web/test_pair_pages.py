@@ -1,4 +1,4 @@
-"""The page of pairs: what it ranks is what `POST /api/v1/pairs` answers, and a pair that is taken judges as it did."""
+"""Page of pairs: its ranking equals the answer of `POST /api/v1/pairs`, and a taken pair keeps its judgement."""
 
 import re
 from html import unescape
@@ -42,7 +42,7 @@ def ranked(page: str) -> list[tuple[str, str]]:
 
 
 def taken(page: str) -> str:
-    """Address of the pair that is looked at, in the application."""
+    """Address of the application with the chosen pair."""
     found = re.search(r'class="primary button" href="([^"]*)"', page)
     assert found
     return unescape(found[1])
@@ -77,7 +77,7 @@ def test_a_pair_that_is_taken_judges_as_the_pair_did(keeping: TestClient, list_i
     answer = keeping.post("/api/v1/select", json=MOVED | {"requirements": {"motor": figures}}).json()
     judged = next(one for one in answer["candidates"] if one["designation"] == pair["designation"])
     assert judged["status"] == pair["status"] == "suitable"
-    assert judged["utilisation"] == pytest.approx(pair["utilisation"], rel=1e-12)  # one engine, in another order
+    assert judged["utilisation"] == pytest.approx(pair["utilisation"], rel=1e-12)  # one engine, another order of sums
     assert keeping.get(address).status_code == 200
 
 
@@ -104,6 +104,32 @@ def test_a_marked_pair_is_looked_at_suitable_or_not(keeping: TestClient, list_id
 
     heading = re.search(r'id="pair-heading">(.*?)</h2>', page, re.S)
     assert heading and "HPN-11A-50" in heading[1] and "S80-2.4" in heading[1]
+
+
+def test_a_failing_pair_says_what_would_make_it_fit_as_its_selection_does(keeping: TestClient, list_id: str) -> None:
+    page = keeping.get(query(TYPED, list=list_id, at="HPN-11A-50 S60-1.3")).text
+    remedy = re.search(r"<p>(Fits if [^<]*)</p>", page)
+
+    assert "not suitable · " in " ".join(re.sub(r"<[^>]+>", "", page).split())
+    assert remedy and unescape(remedy[1]) in unescape(keeping.get(taken(page)).text)
+    beside = keeping.get(query(TYPED, list=list_id, at="HPN-11A-50 S60-1.3", fd="9999")).text
+    assert "Fits if" not in beside  # a resonance that is too low has no remedy
+
+
+def test_all_pairs_and_the_best_of_each_motor_are_a_link_apart(keeping: TestClient, list_id: str) -> None:
+    page = keeping.get(query(TYPED, list=list_id)).text
+    (every,) = re.findall(r'<a href="(/pairs[^"]*)">All suitable pairs</a>', page)
+    whole = keeping.get(unescape(every)).text
+    (best,) = re.findall(r'<a href="(/pairs[^"]*)">Best of each motor</a>', whole)
+
+    assert len(ranked(whole)) > len(ranked(page))
+    assert ranked(keeping.get(unescape(best)).text) == ranked(page)
+
+
+def test_bounds_stand_in_the_form_with_the_readers_decimal_mark(keeping: TestClient, list_id: str) -> None:
+    page = keeping.get(query(TYPED, list=list_id, fd="12.5") + "&eta=0.95", headers={"accept-language": "de"}).text
+
+    assert 'value="0,95"' in page and 'value="12,5"' in page
 
 
 def test_the_limit_of_the_drive_is_said_with_what_the_motor_would_do(keeping: TestClient, list_id: str) -> None:
@@ -143,7 +169,7 @@ def test_an_axis_of_a_machine_has_pairs_and_takes_one(keeping: TestClient, list_
 
     assert address.startswith(f"/machines/{id}/axes/1?")
     given = parse_qs(urlsplit(address).query)
-    assert "Tmn" in given and "Lh" not in given  # what the machine has in common stays the machine's
+    assert "Tmn" in given and "Lh" not in given  # common values stay the machine's
     assert keeping.get(address).status_code == 200
 
 

@@ -39,7 +39,7 @@ def test_an_open_question_shows_what_each_answer_makes_of_the_table(client: Test
 
 
 def test_each_answer_shows_its_cycle_where_by_one_of_them_a_named_row_is_no_sum(client: TestClient) -> None:
-    """By a comma 1,900 is no sum of the times, which only the next question asks about."""
+    """With a decimal comma 1,900 is not the sum of the times; only the next question asks about it."""
     text = "Step\tT\tn\tt [ms]\nrise\t12\t1,250\t350\nrun\t5\t2,500\t1,200\nbrake\t-9\t1,250\t350\nSum\t\t\t1,900\n"
     page = client.post("/paste", data={"text": text}, headers=HTMX).text
 
@@ -190,7 +190,7 @@ def test_a_table_that_can_not_be_taken_is_a_422_that_says_why(client: TestClient
 
 @pytest.mark.parametrize(("columns", "refused"), [(200, False), (201, True), (45_000, True)])
 def test_more_columns_than_any_table_has_are_refused(client: TestClient, columns: int, refused: bool) -> None:
-    """A table of 45,000 columns took five seconds: each of its numbers was looked at as a heading."""
+    """A table of 45,000 columns took five seconds, as each of its numbers was tried as a heading."""
     row = ";".join(["40.5"] * columns)
     page = client.post("/paste", data={"link": LINK, "text": f"{row}\n{row}"}, headers=HTMX)
     assert (page.status_code == 422) == refused

@@ -1,4 +1,4 @@
-"""Tables as people paste them: what each becomes, or what is asked, or why it is refused; none is silently wrong."""
+"""Tables as people paste them: each has its phases, questions or reason for refusal; none is silently wrong."""
 
 import re
 import tomllib
@@ -21,7 +21,7 @@ SYMBOLS = ("T", "n", "t", "FRi", "FAi", "Tpk", "npk", "Trms", "Tlo")
 
 
 def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str, str | list[str]]:
-    """Outcome of a table: `becomes` with phases, `asks` with questions, or `refused` with the reason."""
+    """Outcome of a table: `becomes` and phases, `asks` and questions, or `refused` and the reason."""
     fields = {"take": "replace", **chosen}
     content = case["text"].encode(case["as"]) if "as" in case else b""
     files = {"file": ("cycle.csv", content)} if "as" in case else None
@@ -75,7 +75,7 @@ def test_choices_about_one_table_say_nothing_about_another(client: TestClient) -
 
 
 def of_table(client: TestClient, case: Case) -> str:
-    """Digest that the choices about a table are tied to, from its preview."""
+    """Digest from a table's preview, which the choices about the table belong to."""
     reply = client.post(
         "/paste", data={"text": case["text"]}, headers={"Cookie": f"hpn_units={case.get('reader', '')}"}
     )

@@ -1,4 +1,4 @@
-"""Workbooks as tables: what their cells show is what is read, and no file, however made, is an error of the server."""
+"""Workbooks as tables: cells are read as they are shown, and no file, however made, causes a server error."""
 
 import io
 import re
@@ -24,7 +24,7 @@ HEADER: list[Cell] = ["Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer [s]"]
 
 
 def book(*rows: Sequence[Cell], name: str = "Tabelle1", into: Workbook | None = None) -> Workbook:
-    """A workbook with a sheet of these rows; a pair is a value with its number format."""
+    """Workbook with a sheet of these rows; a pair is a value with its number format."""
     made = into or Workbook()
     sheet = made.create_sheet(name) if into or made.active is None else made.active
     sheet.title = name
@@ -61,7 +61,7 @@ def said(reply: Any) -> str:
     [
         ([HEADER, [40.5, 1250, 0.3]], [("40.5", "1250", "0.3")]),
         ([[40.5, 1250, 0.3]], [("40.5", "1250", "0.3")]),
-        ([[1.234, 250, 3]], [("1.234", "250", "3")]),  # a number is no text with two readings
+        ([[1.234, 250, 3]], [("1.234", "250", "3")]),  # a number is unambiguous, unlike a text
         (
             [HEADER, [(1234.5, "#,##0.00"), (0.25, "0.000"), (0.123456789012345, "0.0")]],
             [("1234.5", "0.25", "0.123456789012345")],
@@ -182,7 +182,7 @@ def test_number_that_is_merged_over_others_is_refused(client: TestClient, cells:
     made = book([*HEADER, "FR [N]", "FA [N]"], [40, 250, 0.3, 1500, 1], [20, 250, 0.2, None, 1])
     made.worksheets[0].merge_cells(cells)
     book([*HEADER], [40, 250, 0.3], name="other", into=made)
-    sheet, whole = {"sheet": "Tabelle1", "take": "replace"}, content(made)  # saved again it holds another time
+    sheet, whole = {"sheet": "Tabelle1", "take": "replace"}, content(made)  # saving again changes its time
     headers = {"HX-Request": "true"} if script else {}
     shown = client.post("/paste", files={"file": ("a.xlsx", whole)}, headers=headers)
     hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', shown.text)}
@@ -262,7 +262,7 @@ def test_name_merged_over_some_columns_is_part_of_their_names(client: TestClient
         "Motorwelle", "Test"
     )
     assert "What is column “Kanal 7 Drehmoment [Nm]”?" in merged("Kanal 7", "Test")
-    assert "What is column “Temperatur”?" in merged("Abtrieb", "Test")  # under no name, and no part of the title
+    assert "What is column “Temperatur”?" in merged("Abtrieb", "Test")  # under no name and not in the title
 
 
 @pytest.mark.parametrize("script", [True, False])
@@ -288,7 +288,7 @@ def test_sheet_is_asked_for_where_several_have_cells(client: TestClient, script:
 
 
 def parts(file: bytes, change: Callable[[str, bytes], bytes]) -> bytes:
-    """A workbook with other parts."""
+    """Workbook with changed parts."""
     out = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(file)) as old, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as new:
         for name in old.namelist():

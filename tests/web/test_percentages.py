@@ -1,4 +1,4 @@
-"""A failing check never reads like a passing one: a percentage has the digits that tell it from its limit."""
+"""A failing check never reads like a passing one: a percentage has enough digits to differ from its limit."""
 
 import html
 import re
@@ -24,7 +24,7 @@ NEAR = [
 
 
 def words(api: TestClient, address: str, language: str) -> str:
-    """Text of a page, each run of blanks as one."""
+    """Text of a page, with each run of blanks as one blank."""
     page = api.get(address, headers={"Accept-Language": language}).text
     return re.sub("[ \n]+", " ", html.unescape(re.sub(r"<[^>]+>", "", page)))
 
@@ -52,7 +52,7 @@ def test_only_part_of_a_limit_is_allowed_where_the_user_says_so(api: TestClient)
 
 
 def test_the_share_of_the_bearing_life_names_the_load_and_the_cube_of_u(api: TestClient) -> None:
-    """108 h of 20,000 h at 569 %: the share is one of loads, and u of a load leaves u³ of the life."""
+    """108 h of 20,000 h at 569 %: the share is a ratio of loads, and a load limit u means a life limit u³."""
     over = words(api, "/?T=900&n=1500&t=3&FR=9000", "en")
     fits = words(api, "/?T=90&n=150&t=3&FR=900&u=0.9", "en")
 

@@ -1,4 +1,4 @@
-"""Kinds of problems: each problem leads to a page with its cause and remedy, and each of its errors has a code."""
+"""Kinds of problems: each problem links to a page with cause and remedy, and each of its errors has a code."""
 
 import re
 
@@ -62,3 +62,13 @@ def test_nginx_names_the_kinds_of_the_service() -> None:
     assert kinds.pop("default") == OF_STATUS[400]
     assert kinds.pop("~^5") == OF_STATUS[503]
     assert kinds == {str(status): OF_STATUS[status] for status in (404, 405, 408, 413, 414, 421, 429, 431)}
+
+
+def test_a_script_gets_the_reason_of_a_refusal_in_the_readers_language(api: TestClient) -> None:
+    headers = {"Content-Type": "application/x-www-form-urlencoded", "Accept-Language": "de", "HX-Request": "true"}
+
+    answer = api.post("/", content=b"T=" + b"9" * 2_000_001, headers=headers)
+
+    assert answer.status_code == 413
+    assert answer.json()["detail"] == "die Anfrage darf höchstens 2000000 Byte haben"
+    assert answer.json()["type"] == "/problems/too-large"

@@ -1,4 +1,4 @@
-"""`POST /api/v1/select` over HTTP: the contract's shape, and a problem that points at what is wrong."""
+"""`POST /api/v1/select` over HTTP: the contract's shape, and problems with pointers to the faults."""
 
 import json
 import math
@@ -22,7 +22,7 @@ EXAMPLE = worked_example(requirements={"ratios": [5]})
 
 
 def refused(api: TestClient, application: Any, status: int = 422) -> dict[str, str]:
-    """Details by pointer."""
+    """Details of a refusal's errors by pointer."""
     reply = api.post(PATH, json=application)
     assert reply.status_code == status
     assert reply.headers["content-type"] == "application/problem+json"
@@ -248,7 +248,7 @@ def test_many_names_twice_are_refused_at_once(api: TestClient) -> None:
     reply = api.post(PATH, content=content, headers={"content-type": "application/json"})
 
     assert reply.status_code == 422
-    assert time.perf_counter() - start < 1  # 0.01 s; the time of counting colons, not of parsing
+    assert time.perf_counter() - start < 1  # takes 0.01 s, for counting colons instead of parsing
 
 
 def test_ten_thousand_phases_are_answered_and_one_more_is_refused(api: TestClient) -> None:
@@ -258,7 +258,7 @@ def test_ten_thousand_phases_are_answered_and_one_more_is_refused(api: TestClien
     assert many.status_code == 200
     for gear, split in zip(one["candidates"], many.json()["candidates"], strict=True):
         assert gear["designation"] == split["designation"]
-        # splitting a constant load changes nothing but the rounding of a sum of ten thousand
+        # splitting a constant load only changes the rounding of a sum of ten thousand terms
         expected = gear["utilisation"] and pytest.approx(gear["utilisation"], rel=1e-11)
         assert split["utilisation"] == expected
     found = refused(api, cycle(*[phase(10, 100)] * 10_001))
@@ -351,7 +351,7 @@ def test_the_best_candidates_and_some_fields_are_those_of_the_whole_reply(api: T
         "candidates": [{name: one[name] for name in ("designation", "checks")} for one in whole["candidates"][:2]],
     }
     assert part("top=1&fields=candidates,candidates.size") == {"candidates": whole["candidates"][:1]}
-    # Over a tolerance alone there is one; without any a reply lacks the field, whoever asks for it.
+    # Only tolerances give this field; without any a reply lacks it, even if it is requested.
     assert part("fields=tolerance,selected") == {"selected": whole["selected"]}
 
 
@@ -368,3 +368,24 @@ def test_a_part_that_there_is_none_of_is_refused_by_its_parameter(api: TestClien
 
     assert reply.status_code == 422
     assert [error["pointer"] for error in reply.json()["errors"]] == [pointer]
+
+
+@pytest.mark.parametrize(
+    ("body", "detail"),
+    [
+        (b"", "the body is empty"),
+        (b" \n", "the body is empty"),
+        ('{"rank_by": "weight"}'.encode("utf-16"), "the body is not text in UTF-8"),
+        (b"torque", "the body is not JSON: expected ident at line 1 column 2"),
+    ],
+)
+def test_a_body_that_is_no_json_is_refused_with_the_reason(api: TestClient, body: bytes, detail: str) -> None:
+    answer = api.post(PATH, content=body, headers={"Content-Type": "application/json"})
+
+    assert (answer.status_code, answer.json()["detail"]) == (400, detail)
+
+
+def test_a_boolean_is_asked_for_by_its_two_words(api: TestClient) -> None:
+    application = {**worked_example(), "requirements": {"load_reverses": 1}}
+
+    assert refused(api, application) == {"/requirements/load_reverses": "must be true or false"}

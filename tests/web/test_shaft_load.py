@@ -1,4 +1,4 @@
-"""The page of a pinion or pulley on the gear's shaft: inputs, the load that is told, the press that counts it."""
+"""Page of a pinion or pulley on the gear's shaft: inputs, the load that it names, the button that counts it."""
 
 import html
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""A sizing by IDTA 02021 at the doors: REST, the page that imports, and the command line."""
+"""Sizing by IDTA 02021 at the doors: REST, the page that imports, and the command line."""
 
 import json
 from pathlib import Path
@@ -22,7 +22,7 @@ Output = pytest.CaptureFixture[str]
 
 @pytest.fixture(scope="module")
 def own(catalogue: Catalogue) -> bytes:
-    """A package of the service."""
+    """Package of the service."""
     return package(typed_export_of(EVERYTHING, catalogue))
 
 

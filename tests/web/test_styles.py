@@ -1,4 +1,4 @@
-"""The style sheets say what browsers understand."""
+"""Style sheets contain only declarations that browsers understand."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ BOTH = re.compile(rf"\(\s*{COLOUR}\s*,\s*{COLOUR}\s*\)")
 
 @pytest.mark.parametrize("file", sorted(STATIC.glob("*.css")), ids=lambda file: file.name)
 def test_light_dark_is_given_two_colours(file: Path) -> None:
-    """With anything else the browser drops the whole declaration, and says nothing."""
+    """With any other argument the browser silently drops the whole declaration."""
     text = file.read_text()
 
     wrong = [text[call.start() :][:60] for call in re.finditer("light-dark", text) if not BOTH.match(text, call.end())]

@@ -1,8 +1,9 @@
-"""Templates as the build compiled them."""
+"""Templates compiled by the build."""
 
 from pathlib import Path
 
 import pytest
+from jinja2 import pass_context
 
 from hpn.web.pages import assets, templates
 
@@ -24,6 +25,19 @@ def test_a_template_that_has_changed_since_is_compiled_anew(tmp_path: Path, monk
     page.write_text("after")
     assert templates.environment_of(assets.Assets.load()).get_template("page.html").render() == "after"
     assert len(list((tmp_path / "compiled").iterdir())) == 1
+
+
+def test_a_template_whose_filter_now_takes_the_context_is_compiled_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(templates, "TEMPLATES", tmp_path)
+    monkeypatch.setattr(templates, "COMPILED", tmp_path / "compiled")
+    (tmp_path / "page.html").write_text("{{ 'word' | capital }}")
+    templates.compile_all()
+    with_context = pass_context(lambda context, text: text.upper())
+    monkeypatch.setattr(templates, "FILTERS", templates.FILTERS | {"capital": with_context})
+    templates.compile_all()
+    assert templates.environment_of(assets.Assets.load()).get_template("page.html").render() == "WORD"
 
 
 def test_a_tree_that_has_been_moved_keeps_its_compiled_templates(

@@ -71,19 +71,19 @@ def test_the_worst_case_has_a_limit_of_its_own(api: TestClient) -> None:
     reply = select(api, worked_example(tolerances=TOLERANCES, requirements=asked))
 
     assert reply["tolerance"]["holds"]
-    assert select(api, reply["tolerance"]["case"])["selected"] == reply["selected"]  # judged by 1, as here
+    assert select(api, reply["tolerance"]["case"])["selected"] == reply["selected"]  # judged by the limit 1, as here
 
 
 LEVER: Json = cycle(
     phase(5, 100),
-    output_load={"radial_N": 350, "radial_position_mm": 40},  # x_c is not known: 350 N at the centre are a lower bound
+    output_load={"radial_N": 350, "radial_position_mm": 40},  # x_c is unknown: 350 N at the centre are a lower bound
     tolerances={"output_load.radial_N": {"percent": 25}},
 )
 
 
 @pytest.mark.parametrize(("u", "of_worst"), [(0.8, 1.0), (1.0, 0.8)])
 def test_a_lower_bound_passes_no_worst_case(api: TestClient, u: float, of_worst: float) -> None:
-    """It fails above the limit of the worst case, and says nothing below; u is of the nominal case alone."""
+    """It fails above the limit of the worst case, and is unrated below; u applies only to the nominal case."""
     asked = {"sizes": ["11A"], "utilisation": u, "worst_case_utilisation": of_worst}
     nominal = select(api, LEVER | {"requirements": asked})["candidates"][0]
     by_worst = select(api, LEVER | {"requirements": asked | {"over_tolerance": True}})["candidates"][0]
@@ -119,7 +119,7 @@ TURNED: Json = {"duty_cycle": {"motion": TURNING, "pause_s": 1.0}}
 
 
 def test_a_corner_that_is_no_application_is_an_error_of_its_line_alone(api: TestClient) -> None:
-    """At 2 % further out, 12 kg at 255 mm have 0.780 kg·m², more than the 0.76 of the whole load."""
+    """With +2 %, 12 kg at 255 mm have 0.780 kg·m², more than the 0.76 kg·m² of the whole load."""
     moved = {"motion.mechanism.gravity_radius_mm": {"percent": 2}}
     mechanism = {**TURNING["mechanism"], "inertia_kgm2": 0.76}
     bad = {"duty_cycle": {"motion": {**TURNING, "mechanism": mechanism}}, "tolerances": moved}
@@ -172,7 +172,7 @@ WRONG = {
     "FR:5p": "f-tol_FR",
     "tp:1p/2p/3p": "tol-0",
 }
-"""Tolerances without sense, and the field that each is said beside; a link's own has one where no other takes it."""
+"""Invalid tolerances, and the field beside which each error is shown; `tol-0` is the link's own, for the others."""
 
 
 @pytest.mark.parametrize("link", WRONG)
@@ -229,7 +229,7 @@ ROWS = {
 
 @pytest.mark.parametrize("press", ROWS)
 def test_the_tolerance_of_a_row_goes_with_its_row(press: str) -> None:
-    """32 Nm of the second phase have it, wherever that phase comes to stand; a blank row between counts for nothing."""
+    """The second phase's 32 Nm keep it, wherever that phase is moved; a blank row between does not count."""
     form = link_reader.parse(pairs_of(f"{EXAMPLE}&tol=T.2:10p&do={press}"))
     (at,) = (k for k, row in enumerate(form.rows) if row["T"] == "32")
 
@@ -284,7 +284,7 @@ def test_a_saved_selection_keeps_its_tolerances(api: TestClient) -> None:
 
 
 def test_the_worst_cycle_is_drawn_at_the_edge_of_its_tolerances(api: TestClient) -> None:
-    """Torque of a phase that is worst where it is high: the case reaches the band's edge, and not what was given."""
+    """A torque that is worst at its maximum: the case reaches the band's edge instead of the given value."""
     page = api.get(f"/?{EXAMPLE}&tol=T:10p", headers={"HPN-Parts": "tolerance"}).text
     figure = page.partition('aria-labelledby="worst-cycle-heading"')[2].partition("</figure>")[0]
     torque = {
@@ -300,3 +300,48 @@ def test_a_motion_has_no_worst_cycle_of_typed_phases(api: TestClient) -> None:
 
     assert "Deciding inputs" in page
     assert "worst-cycle-heading" not in page
+
+
+VARYING: Json = TURNED | {"tolerances": {"motion.moves.0.time_s": {"percent": 5}, "pause_s": {"percent": 10}}}
+
+
+def on_the_edge(api: TestClient) -> Json:
+    """Motion with a varying time, restricted to its gear, with a limit just above its utilisation for given values."""
+    best = select(api, TURNED)["candidates"][0]
+    asked = {"sizes": [best["size"]], "ratios": [best["ratio"]], "utilisation": best["utilisation"] * (1 + 1e-6)}
+    return VARYING | {"requirements": asked}
+
+
+def test_a_sampled_case_that_fails_opens_and_fails(api: TestClient) -> None:
+    """The sample is an ordinary application, with the same utilisation apart from rounding."""
+    reply = select(api, on_the_edge(api))
+    room, (candidate, *_) = reply["tolerance"], reply["candidates"]
+    opened = select(api, room["case"])["candidates"][0]
+
+    assert (room["holds"], room["exact"]) == (False, False)
+    assert "tolerances" not in room["case"] and opened["status"] == "unsuitable"
+    assert opened["utilisation"] == pytest.approx(candidate["worst"]["utilisation"], rel=1e-12)
+    assert api.get(room["link"]).status_code == 200
+
+
+def test_what_is_sampled_is_the_same_each_time_and_a_bound(api: TestClient) -> None:
+    first, again = (select(api, on_the_edge(api), "?samples=1000")["tolerance"] for _ in range(2))
+    holding = select(api, VARYING, "?samples=1000")["tolerance"]["share"]
+
+    assert first == again
+    assert 0 < first["share"]["failing"] / first["share"]["samples"] < first["share"]["upper"] < 1
+    assert (holding["failing"], holding["samples"]) == (0, 256)
+    assert holding["upper"] == pytest.approx(1 - 0.05 ** (1 / 256), rel=1e-9)
+
+
+@pytest.mark.parametrize(("language", "said"), [("en", "always the same"), ("de", "immer die gleichen")])
+def test_the_page_says_that_it_is_sampled_and_never_that_nothing_fails(
+    api: TestClient, language: str, said: str
+) -> None:
+    link = select(api, VARYING)["link"]
+    page = api.get(link, headers={"HPN-Parts": "tolerance", "Accept-Language": language}).text
+    of_share = page.partition("share-of-cases")[2].partition("</p>")[0]
+
+    assert said in page and "≈" in page
+    assert "1.2" in of_share or "1,2" in of_share  # 1 - 0.05^(1/256), rounded up
+    assert not re.search(r"[^0-9.,]0\s?%", of_share)

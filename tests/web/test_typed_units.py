@@ -1,4 +1,4 @@
-"""Units in fields: each that a page prints beside a field may be typed into it, and others that engineers write."""
+"""Units in fields: every unit printed beside a field may be typed into it, and so may others that engineers write."""
 
 import re
 from collections.abc import Iterator
@@ -28,13 +28,13 @@ WITHIN = re.compile(r'name="(\w+)"\s+type="text"[^>]*aria-label="[^"]* in ([^" ]
 
 
 def printed(page: str) -> set[tuple[str, str]]:
-    """Names of the fields of a page with the unit that stands beside each, in a table within its label."""
+    """Names of a page's fields, each with the unit beside it, or in tables within its label."""
     found = [*BESIDE.findall(page), *WITHIN.findall(page)]
     return {(name, unescape(unit).strip()) for name, unit in found if unit.strip()}
 
 
 def typed(name: str, text: str, marker: str, mechanism: str) -> str:
-    """A text in a field as the wire has it."""
+    """Text of a field in the wire's unit and notation."""
     wire = Notation({"written": marker}).entry(text, units_of(mechanism)[name])
     assert not (isinstance(wire, Entry) and wire.refusal), (name, text, getattr(wire, "refusal", ""))
     return wire
@@ -46,7 +46,7 @@ def typed(name: str, text: str, marker: str, mechanism: str) -> str:
 def test_every_unit_that_a_page_prints_beside_a_field_may_be_typed_into_it(
     kind: str, units: str, language: str, client: TestClient
 ) -> None:
-    """The number with the unit is the number alone, which the field takes in the unit that stands beside it."""
+    """A number typed with the unit equals the number alone, which has the unit beside the field."""
     mechanism, address = PAGES[kind]
     cookies = {"Cookie": f"hpn_units={units}; hpn_language={language}"}
     fields = printed(client.get(address, headers=cookies).text)
@@ -97,7 +97,7 @@ def test_every_unit_that_a_page_prints_beside_a_field_may_be_typed_into_it(
     ],
 )
 def test_a_unit_as_engineers_write_it_has_its_value(mechanism: str, name: str, text: str, value: float) -> None:
-    """Twelve digits are kept of a number in another unit."""
+    """A number in another unit has twelve digits after conversion."""
     assert float(typed(name, text, "en", mechanism)) == pytest.approx(value, rel=1e-11)
 
 
@@ -139,7 +139,7 @@ def test_a_form_with_years_is_an_application_with_their_hours_and_the_page_says_
 
 
 def fields_of(address: str) -> Iterator[tuple[str, str]]:
-    """Names and texts of an address."""
+    """Yield names and texts of an address."""
     for pair in address.partition("?")[2].split("&"):
         name, _, text = pair.partition("=")
         yield name, text.replace("+", " ")

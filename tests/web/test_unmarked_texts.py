@@ -1,4 +1,4 @@
-"""Pages in a made-up language whose letters look different: what still has plain letters was never translated."""
+"""Pages in a made-up language with different letters: a text with plain letters is not marked for translation."""
 
 import re
 from collections.abc import Iterator
@@ -48,20 +48,20 @@ FULL_WIDTH = {ord(letter): ord(letter) + 0xFEE0 for letter in "abcdefghijklmnopq
 
 
 class FullWidth(NullTranslations):
-    """Translations into letters that no text of ours has."""
+    """Translations into letters that the service's texts don't contain."""
 
     def gettext(self, message: str) -> str:
-        """A text with every letter outside of its placeholders changed."""
+        """Text with every letter outside placeholders changed."""
         parts = re.split(r"(%\(\w+\)s|\{\w+\})", message)
         return "".join(part if k % 2 else part.translate(FULL_WIDTH) for k, part in enumerate(parts))
 
     def ngettext(self, one: str, many: str, number: int) -> str:
-        """Likewise, for a number of things."""
+        """Text for a number, with every letter outside placeholders changed."""
         return self.gettext(one if number == 1 else many)
 
 
 class Texts(HTMLParser):
-    """Texts and spoken attributes of a page, without its scripts, formulas and what stands for itself."""
+    """Texts and spoken attributes of a page, without scripts, formulas, code and symbols."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -69,7 +69,7 @@ class Texts(HTMLParser):
         self.open: list[str] = []
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        """Note attributes, and whether what follows is to be read."""
+        """Note attributes, and skip the content of elements without prose."""
         given = dict(attributes)
         if tag in ("script", "style", "var", "math", "code", "pre", "kbd", "sub"):
             self.open.append(tag)
@@ -81,7 +81,7 @@ class Texts(HTMLParser):
             self.found += [str(given[name]) for name in SHOWN if given.get(name)]
 
     def handle_endtag(self, tag: str) -> None:
-        """Read what follows again."""
+        """End the skipping of an element's content."""
         if self.open and self.open[-1] == tag:
             self.open.pop()
 

@@ -1,9 +1,8 @@
-"""Every way through the site keeps the selection that a reader comes from."""
+"""Every way through the site keeps the reader's selection."""
 
 import html
 from collections.abc import Iterator
 from html.parser import HTMLParser
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
@@ -33,17 +32,18 @@ PAGES = (
 )
 
 
-@pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
-    """A service with two saved selections."""
-    with TestClient(create_app(Settings(database_url=SecretStr(f"sqlite:///{tmp_path}/store.sqlite3")))) as client:
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """Client of a service with two saved selections."""
+    file = tmp_path_factory.mktemp("ways") / "store.sqlite3"
+    with TestClient(create_app(Settings(database_url=SecretStr(f"sqlite:///{file}")))) as client:
         for _ in range(2):
             client.post("/api/v1/selections", json={"application": worked_example()})
         yield client
 
 
 class Ways(HTMLParser):
-    """Links of a page, and its forms that ask for another one, each with the names that it sends."""
+    """Links of a page, and its forms that get another page, each with the names that it sends."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -87,7 +87,7 @@ def test_the_name_of_the_site_leads_back_to_the_form_and_on_the_form_nowhere(cli
 
     assert 'class="brand" href="/?T=41' in elsewhere
     assert 'class="brand" aria-current="page"' in form
-    assert 'formaction="/checks/average_torque"' in form  # a button of the form, which sends what it says
+    assert 'formaction="/checks/average_torque"' in form  # a button of the form, which sends the form's content
 
 
 STILL = " come from the example:"

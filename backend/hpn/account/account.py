@@ -1,4 +1,4 @@
-"""The account of a selection: what was asked, what came of it and what is published, once for every page and file."""
+"""The account of a selection: its inputs, results and published figures, the same for every page and file."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -40,9 +40,9 @@ UNLIMITED = N_("unlimited")
 
 @dataclass(frozen=True, slots=True)
 class CheckLine:
-    """A check of the gear: its result and definition, how demand and limit are read, and where the limit comes from.
+    """A check of the gear: its result and definition, the reading of demand and limit, and the source of the limit.
 
-    `bound` is the largest utilisation with which it passes.
+    `bound` is the largest utilisation at which it passes.
     """
 
     code: str
@@ -54,16 +54,19 @@ class CheckLine:
     governs: bool
 
     def where(self, reader: Reader) -> str:
-        """Equation of the check and where its limit comes from."""
+        """Equation of the check and source of its limit."""
         equation = self.definition.equation
-        return " · ".join(filter(None, (equation and reader.told(equation_of(equation)), reader.source(self.source))))
+        return " · ".join(
+            filter(None, (equation and reader.sentence(equation_of(equation)), reader.source(self.source)))
+        )
 
 
 @dataclass(frozen=True)
 class Account:
-    """A gear of a selection. A kept answer may lack its application or its catalogue, and what follows from them.
+    """A gear of a selection. A kept answer may lack its application or its catalogue, and all data that depends on
+    them.
 
-    A line without a value is one that is asked for and not known; figures that its version did not know have no line.
+    A line without a value is asked for and unknown; figures that the answer's version did not know have no line.
     """
 
     selection: Selection
@@ -77,22 +80,22 @@ class Account:
 
     @property
     def gear(self) -> Gear | None:
-        """Published figures as they were, or None."""
+        """The gear in the answer's catalogue, or None."""
         return self.catalogue.by_designation.get(self.candidate.designation) if self.catalogue else None
 
     @cached_property
     def equipped(self) -> Application | None:
-        """The application with the figures of the motor that it names, as far as the catalogue is at hand."""
+        """The application with the figures of its listed motor, if the catalogue is available."""
         if self.application is None or self.catalogue is None:
             return self.application
         return with_listed_motor(self.application, self.catalogue)
 
     @property
     def utilisation(self) -> float:
-        """Largest utilisation that is accepted."""
+        """Largest permissible utilisation of a load check."""
         return self.application.requirements.utilisation if self.application else 1.0
 
-    # --- What was asked -----------------------------------------------------------------------------------------------
+    # --- Inputs -------------------------------------------------------------------------------------------------------
 
     @cached_property
     def loads(self) -> list[Line]:
@@ -106,22 +109,22 @@ class Account:
 
     @cached_property
     def mechanism(self) -> list[Line]:
-        """Mechanism of a motion; nothing where phases were given."""
+        """Mechanism of a motion; empty for typed phases."""
         motion = self.application.duty_cycle.motion if self.application else None
         return mechanism_of(motion) if motion else []
 
     @cached_property
     def moves(self) -> LineTable | None:
-        """Moves of a motion; None where phases were given."""
+        """Moves of a motion; None for typed phases."""
         motion = self.application.duty_cycle.motion if self.application else None
         return moves_of(motion) if motion else None
 
     @cached_property
     def phases(self) -> LineTable | None:
-        """Load phases; None where the application is not known."""
+        """Load phases; None if the application is unknown."""
         return phases_of(self.application.duty_cycle) if self.application else None
 
-    # --- What came of it ----------------------------------------------------------------------------------------------
+    # --- Results ------------------------------------------------------------------------------------------------------
 
     @cached_property
     def cycle(self) -> list[Line]:
@@ -137,7 +140,7 @@ class Account:
         return [self.figure(name) for name in FIGURES if self.candidate.says(name)]
 
     def figure(self, name: str) -> Line:
-        """One of these figures, which the candidate has to know."""
+        """One of these figures, which must be known to the candidate."""
         named = CANDIDATE[name]
         if name == "position_error_arcmin" and self._is_at_rest:
             named = replace(named, name=N_("Position error at rest"))
@@ -182,11 +185,11 @@ class Account:
         return {line.code: line for line in (*ranges, *self.cycle, *self.figures, *self.reserves, *self.published)}
 
     def line(self, code: str) -> Line | None:
-        """A figure by its place in `QUANTITIES`; None of one that the version of a kept answer did not know."""
+        """A figure by its place in `QUANTITIES`; None if the version of a kept answer did not know it."""
         return self._by_code.get(code)
 
     def text(self, code: str, reader: Reader) -> str:
-        """A figure with its unit, a dash where it is not known; blank of one that has no line."""
+        """A figure with its unit, a dash if unknown; blank for a figure without a line."""
         line = self.line(code)
         return (line.text(reader) or NOTHING) if line else ""
 
@@ -199,12 +202,12 @@ class Account:
 
     @property
     def motor_checks(self) -> list[CheckLine]:
-        """Checks of the motor, that which governs the gear first."""
+        """Checks of the motor, the gear's governing one first."""
         of_motor = {check.code for check in OF_MOTOR}
         return sorted((line for line in self.checks if line.code in of_motor), key=lambda line: not line.governs)
 
     def check(self, code: str) -> CheckLine | None:
-        """A check; None where it was not asked for."""
+        """A check; None if it was not asked for."""
         return next((check for check in self.checks if check.code == code), None)
 
     def _checks(self) -> Iterator[CheckLine]:
@@ -215,35 +218,35 @@ class Account:
             yield CheckLine(code, result, definition, readings[code], bound, self._source(code), governs)
 
     def _source(self, code: str) -> str:
-        """Where the limit of a check comes from, as exactly as it is known."""
+        """Source of a check's limit, as exactly as known."""
         figure = BY_CODE[code].limited_by if code in BY_CODE else None
         exact = self.gear.sources.get(figure) if self.gear and figure else None
         return exact or self.selection.check_definitions[code].source
 
-    # --- What follows -------------------------------------------------------------------------------------------------
+    # --- Conclusions --------------------------------------------------------------------------------------------------
 
     @property
     def shortest_life(self) -> Life | None:
-        """The shortest life of the gear; None where none is known."""
+        """The shortest life of the gear; None if unknown."""
         return shortest_life(self.candidate)
 
     @cached_property
     def torque_limit(self) -> TorqueLimit:
-        """Torque limit of the drive on the gear, and what the cycle needs above it."""
+        """Torque limit of the drive on the gear, and a larger need of the cycle."""
         return torque_limit_of(self.candidate, self.gear, self.equipped)
 
     @cached_property
     def is_lower_bound(self) -> bool:
-        """True where the motor torques are loss-free: no efficiency is known."""
+        """True if the motor torques are loss-free, since no efficiency is known."""
         known = self.application is None or self.application.requirements.efficiency is not None
         return not known and not self._follows_efficiency_curve
 
     @property
     def _follows_efficiency_curve(self) -> bool:
-        """True where the motor torques are by a curve of a supplement, phase by phase.
+        """True if the motor torques follow a supplied efficiency curve, phase by phase.
 
-        Without the catalogue of the selection its figures tell, as far as they can: a curve that says nothing of any
-        phase leaves no trace in them.
+        Without the catalogue of the selection its figures are the only evidence: a curve without effect on any phase
+        leaves no trace in them.
         """
         assert self.application is not None
         if self.catalogue is not None:

@@ -12,7 +12,9 @@ from hpn.words.terms import BEARING_MODELS, FOR_OTHERS, LIFE_BASES, MECHANISMS, 
 from hpn.words.wording import N_, Named, Sentence
 
 Value = float | str | Sentence | Mapping[str, float]
-"""A number in the unit of its line, one for each size, or a text: a code, a msgid, the user's own, or a sentence."""
+"""A number in the unit of its line, a number for each size, or a text: a code, a msgid, the user's own, or a
+sentence.
+"""
 
 Kind = Literal["entered", "computed", "published"]
 
@@ -31,18 +33,18 @@ WORDS: Mapping[str, str] = {
     "bearing_L50": N_("bearing L50"),
     **{str(area): text for area, text in AREAS.items()},
 }
-"""Values that are a code, in words."""
+"""Codes -> words."""
 
-TYPED = ("requirements.motor.designation", "phase.name", "motion.move.name")
-"""Inputs that are a text of the user's own."""
+TYPED = ("requirements.motor.designation", "requirements.motor.name", "phase.name", "motion.move.name")
+"""Inputs with a text of the user's own."""
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A quantity by its place in `QUANTITIES`. Its value is None where there is none, though it is asked for.
+    """A quantity by its place in `QUANTITIES`. Its value is None if it is asked for but has none.
 
-    `unit` is a suffix. `until` ends a range that begins with the value, and `sign` says of a bound that it is one.
-    What was entered is written as it stands, what is published likewise in its own unit; any other number is rounded.
+    `unit` is a suffix. `until` ends a range that begins with the value, and `sign` marks a bound. Inputs are written as
+    entered, published figures as printed in their own unit; any other number is rounded.
     """
 
     code: str
@@ -57,6 +59,11 @@ class Line:
     is_supplied: bool = False
 
     @property
+    def field(self) -> str:
+        """Name of its field: the last part of its place."""
+        return self.code.rpartition(".")[2]
+
+    @property
     def end(self) -> Value | None:
         """Largest value: the end of a range, else the value."""
         return self.value if self.until is None else self.until
@@ -65,23 +72,23 @@ class Line:
         """The same quantity with another value."""
         return replace(self, value=value)
 
-    def shown(self, reader: Reader) -> float | str | None:
+    def value_for(self, reader: Reader) -> float | str | None:
         """The value for a cell: a number with every digit in the reader's unit, or a text in their language."""
         if isinstance(self.value, Mapping):
             return "; ".join(f"{_size(size, reader)}: {self.of(x).text(reader)}" for size, x in self.value.items())
         if isinstance(self.value, Sentence):
-            return reader.told(self.value)
+            return reader.sentence(self.value)
         if isinstance(self.value, str):
             return self.value if self.code in TYPED else reader.text(WORDS.get(self.value, self.value))
         return reader.value(self.value, self.unit)
 
     def number(self, reader: Reader, beside: Value | None = None) -> str:
-        """The value as it is read, without its unit: a number, a range or words; blank where there is none.
+        """The value without its unit: a number, a range or words; blank without a value.
 
-        A rounded number has the digits that tell it from the one `beside` it.
+        A rounded number has enough digits to differ from the one `beside` it.
         """
         if not isinstance(self.value, float | int):
-            return str(self.shown(reader) or "")
+            return str(self.value_for(reader) or "")
         printed = self.kind == "published" and reader.measure(self.unit).same
         other = beside if isinstance(beside, float | int) else None
         exact = printed or self.kind == "entered"
@@ -100,8 +107,8 @@ class Line:
         return reader.text(self.named.name)
 
     def where(self, reader: Reader) -> str:
-        """Where the value comes from; blank for what was entered."""
-        return reader.told(self.source) if self.source else ""
+        """Source of the value; blank for an input."""
+        return reader.sentence(self.source) if self.source else ""
 
 
 def _size(size: str, reader: Reader) -> str:
@@ -109,13 +116,13 @@ def _size(size: str, reader: Reader) -> str:
 
 
 def known(lines: Iterable[Line]) -> list[Line]:
-    """Lines that have a value."""
+    """Lines with a value."""
     return [line for line in lines if line.value is not None]
 
 
 @dataclass(frozen=True, slots=True)
 class QuantityColumn:
-    """One quantity of the rows of a table; None where a row says nothing of it."""
+    """One quantity of a table's rows; None for a row without it."""
 
     head: Line
     values: Sequence[Value | None]

@@ -1,4 +1,4 @@
-"""Account of a gear over the tolerances: what was asked, the worst case of each check, and which inputs decide."""
+"""Account of a gear over the tolerances: its tolerances, the worst case of each check, and the deciding inputs."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ from hpn.account.account import Account, CheckLine
 from hpn.account.readings import CheckReading, readings_of
 from hpn.application import Application
 from hpn.application.tolerances import Deviation, Interval, Tolerance
+from hpn.engine.alone import Alone
 from hpn.engine.checks import allowed
 from hpn.engine.room import Room, Share, allowed_of, room_of, scaled, share_of
 from hpn.engine.worst_corner import Corner, corners_of
@@ -22,7 +23,10 @@ MAY_GROW = N_("All tolerances may grow together: × {factor}.")
 MUST_SHRINK = N_("It holds up to × {factor} of all these tolerances.")
 HOLDS_WITH = N_("holds if the tolerance of {symbol} is at most {tolerance}")
 PROVED = N_("proved: at a corner of the tolerances, not by samples")
-SAMPLED = N_("≈ sampled, so that a worse case may lie between; the others are proved at a corner")
+SAMPLED = N_(
+    "≈ sampled at cases that are always the same: a worse one may lie between; the others are proved at a corner"
+)
+ALL_SAMPLED = N_("≈ sampled at cases that are always the same: a worse one may lie between")
 SOME_FAIL = N_("Of {samples} cases at random {failing} fail: with 95 % confidence at most {share}.")
 NONE_FAILS = N_("Of {samples} cases at random none fails: with 95 % confidence fewer than {share} do.")
 SPREAD = N_(
@@ -30,14 +34,14 @@ SPREAD = N_(
 )
 
 SHARE_SAMPLES = 4096
-"""Cases at random that a page or a file looks at."""
+"""Random cases that a page or a file evaluates."""
 
 
 @dataclass(frozen=True, slots=True)
 class WorstLine:
-    """The worst case of a check: utilisation, demand and limit in that case, and the inputs that lie high and low.
+    """The worst case of a check: utilisation, demand and limit in this case, and the inputs with high and low values.
 
-    It is proved where it `is_exact`, else the worst of samples.
+    With `is_exact` it is proved, else it is the worst of samples.
     """
 
     check: CheckLine
@@ -60,7 +64,7 @@ class WorstLine:
 
 @dataclass(frozen=True, slots=True)
 class ToleranceLine:
-    """A tolerance as it was given: its input, and how far it lies below and above."""
+    """A given tolerance: its input, and its deviations below and above."""
 
     path: str
     named: Named
@@ -73,44 +77,54 @@ class ToleranceLine:
         return self.named.symbol
 
     def text(self, reader: Reader, factor: float = 1.0) -> str:
-        """How far the input may lie from its value, or a multiple of it, rounded down: `±10 %`, `+5 % −2 %`."""
+        """Deviation of the input, or a multiple of it rounded down, as text: `±10 %`, `+5 % −2 %`."""
         tolerance = self.tolerance if factor == 1 else scaled(self.tolerance, factor)
         return tolerance_text(tolerance, suffix_of(self.path), reader)
 
 
 @dataclass(frozen=True, slots=True)
 class DecidingLine:
-    """An input whose tolerance decides: the worst case with it exact, and by which factor its tolerance may change."""
+    """An input with a deciding tolerance: the worst case with this input exact, and the factor by which it may
+    change.
+    """
 
-    given: ToleranceLine
+    tolerance: ToleranceLine
     worst: float | None
     allowed: float | None
+
+    def between(self, worst: float | None) -> float:
+        """Utilisation half way between the worst case and this one: both percentages must differ from it."""
+        return 1.0 if worst is None or self.worst is None else (worst + self.worst) / 2
 
 
 @dataclass(frozen=True)
 class OverTolerance:
-    """A gear over the tolerances of an application that is known."""
+    """A gear over the tolerances of a known application."""
 
     account: Account
     application: Application
 
     @cached_property
-    def given(self) -> list[ToleranceLine]:
-        """Tolerances as they were given."""
+    def tolerances(self) -> list[ToleranceLine]:
+        """Tolerances as given."""
         return [line_of(path, tolerance) for path, tolerance in (self.application.tolerances or {}).items()]
 
     @cached_property
     def checks(self) -> list[WorstLine]:
-        """Worst case of every check, that which governs first among equals in the order of the reply."""
-        corners = self._corners
+        """Worst case of every check, in the order of the reply."""
+        codes = [line.code for line in self.account.checks]
+        corners = corners_of(self._alone, codes) if self._alone else dict[str, Corner]()
         return [self._worst(line, corners.get(line.code)) for line in self.account.checks]
 
     @cached_property
-    def _corners(self) -> dict[str, Corner]:
+    def _alone(self) -> Alone | None:
+        """The gear by itself, the source of all other figures; None if its catalogue is not kept."""
         gear, catalogue = self.account.gear, self.account.catalogue
-        if gear is None or catalogue is None:
-            return {}
-        return corners_of(self.application, gear, catalogue, [line.code for line in self.account.checks])
+        return Alone.of(self.application, gear, catalogue) if gear and catalogue else None
+
+    @cached_property
+    def _intervals(self) -> tuple[Interval, ...]:
+        return self.application.intervals
 
     def _worst(self, line: CheckLine, corner: Corner | None) -> WorstLine:
         requirements, worst, exact = self.application.requirements, line.result.worst, line.result.exact
@@ -126,50 +140,43 @@ class OverTolerance:
             exact is True,
             corner,
             reading,
-            symbols_of(corner.high, self.application.intervals) if corner else (),
-            symbols_of(corner.low, self.application.intervals) if corner else (),
+            symbols_of(corner.high, self._intervals) if corner else (),
+            symbols_of(corner.low, self._intervals) if corner else (),
         )
 
     @property
     def governing(self) -> WorstLine | None:
-        """The check that is worst."""
+        """The check that governs the worst case; None if unknown."""
         worst = self.account.candidate.worst
         code = getattr(worst, "governing_check", None)
         return next((line for line in self.checks if line.check.code == code), None)
 
     @cached_property
     def room(self) -> Room | None:
-        """Growth and deciding inputs; those of the answer where it has them."""
+        """Growth and deciding inputs, from the answer if it has them."""
         account = self.account
         tolerance = account.selection.tolerance
         if isinstance(tolerance, Room) and account.candidate.designation == account.selection.selected:
             return tolerance
-        if account.gear is None or account.catalogue is None or account.equipped is None:
-            return None
-        return room_of(self.application, account.equipped, account.gear, account.catalogue, lambda _: "")
+        return room_of(self._alone, lambda _: "") if self._alone else None
 
     @cached_property
     def deciding(self) -> list[DecidingLine]:
-        """Inputs without whose tolerance the worst case falls, the greatest fall first."""
-        by_path = {line.path: line for line in self.given}
-        gear, catalogue = self.account.gear, self.account.catalogue
-        lines = []
-        for one in self.room.deciding if self.room else ():
-            factor = None
-            if gear is not None and catalogue is not None:
-                factor = allowed_of(self.application, gear, catalogue, one.path)
-            lines.append(DecidingLine(by_path[one.path], one.worst, factor))
-        return lines
+        """Inputs whose exact value would improve the worst case, the greatest improvement first."""
+        by_path = {line.path: line for line in self.tolerances}
+        return [
+            DecidingLine(by_path[one.path], one.worst, allowed_of(self._alone, one.path) if self._alone else None)
+            for one in (self.room.deciding if self.room else ())
+        ]
 
     @cached_property
     def share(self) -> Share | None:
-        """Share of cases at random in which the gear fails."""
-        gear, catalogue = self.account.gear, self.account.catalogue
-        return share_of(self.application, gear, catalogue, SHARE_SAMPLES) if gear and catalogue else None
+        """Share of random cases in which the gear fails."""
+        return share_of(self._alone, SHARE_SAMPLES) if self._alone else None
 
     @property
     def growth(self) -> Sentence | None:
-        """Sentence on how far all tolerances may grow together, rounded to the safe side; None without a limit."""
+        """Sentence on the common growth of all tolerances, rounded to the safe side; None without a limit."""
         if self.room is None or self.room.growth is None:
             return None
         factor = Quantity(self.room.growth, "", 3, "down")
@@ -177,12 +184,13 @@ class OverTolerance:
 
     @property
     def standing(self) -> Sentence:
-        """Note on what is proved and what is sampled."""
-        return Sentence(PROVED if all(line.is_exact for line in self.checks) else SAMPLED)
+        """Note on proved and sampled checks."""
+        proved = [line.is_exact for line in self.checks]
+        return Sentence(PROVED if all(proved) else SAMPLED if any(proved) else ALL_SAMPLED)
 
     @property
     def failing(self) -> tuple[Sentence, ...]:
-        """Sentences on the share of cases that fail, as a bound of it."""
+        """Sentences on the upper bound of the share of failing cases."""
         if self.share is None:
             return ()
         bound = Quantity(100 * self.share.upper, "percent", 2, "up")
@@ -191,22 +199,22 @@ class OverTolerance:
 
     @staticmethod
     def remedy(line: "DecidingLine", reader: Reader) -> str:
-        """Tolerance of one input with which the gear holds, in words."""
+        """Tolerance of one input at which the gear holds, in words."""
         values = {
-            "symbol": line.given.symbol or line.given.named.name,
-            "tolerance": line.given.text(reader, line.allowed or 0.0),
+            "symbol": line.tolerance.symbol or line.tolerance.named.name,
+            "tolerance": line.tolerance.text(reader, line.allowed or 0.0),
         }
-        return reader.told(Sentence(HOLDS_WITH, values))
+        return reader.sentence(Sentence(HOLDS_WITH, values))
 
     @property
     def holding(self) -> list[DecidingLine]:
-        """Inputs with a smaller tolerance of which the gear would hold, where it fails."""
+        """Inputs whose smaller tolerance would make a failing gear hold."""
         fails = self.room is not None and not self.room.holds
         return [line for line in self.deciding if fails and line.allowed is not None and 0 < line.allowed < 1]
 
 
 def over_tolerance(account: Account) -> OverTolerance | None:
-    """The gear of an account over the tolerances; None without any, or where its answer knows none."""
+    """The gear of an account over the tolerances; None without any, or if its answer lacks the worst case."""
     application = account.application
     known = any(isinstance(line.worst, float) or line.worst is None for line in account.candidate.checks)
     return OverTolerance(account, application) if application and application.tolerances and known else None
@@ -248,14 +256,14 @@ def _placed(template: str, named: Named, k: int | None = None) -> Sentence:
 
 
 def _numbered(named: Named, k: int) -> Named:
-    """Name with its symbol numbered: `T_1`, `F_R,1`."""
+    """Quantity with a numbered symbol: `T_1`, `F_R,1`."""
     if not named.symbol:
         return named
     return Named(named.name, f"{named.symbol}{',' if '_' in named.symbol else '_'}{k + 1}")
 
 
 def tolerance_text(tolerance: Tolerance, unit: str, reader: Reader) -> str:
-    """A tolerance as it is read."""
+    """A tolerance as text."""
     minus, plus = tolerance.sides
     below, above = (_side(side, unit, reader) for side in (minus, plus))
     return f"±{above}" if minus == plus else f"+{above} {MINUS}{below}"
@@ -264,13 +272,13 @@ def tolerance_text(tolerance: Tolerance, unit: str, reader: Reader) -> str:
 def _side(side: Deviation | None, unit: str, reader: Reader) -> str:
     if side is None or side.absolute is None:
         return reader.with_unit(reader.exact((side and side.percent) or 0.0, "percent"), "percent")
-    if unit == "degC":  # a difference, whatever scale the reader has
+    if unit == "degC":  # a difference, on any scale of the reader
         return f"{reader.exact(side.absolute)} K"
     return reader.with_unit(reader.exact(side.absolute, unit), unit)
 
 
 def symbols_of(moved: Sequence[Interval], every: Iterable[Interval]) -> tuple[str, ...]:
-    """Symbols of inputs that lie to one side; those of all rows of one field together."""
+    """Symbols of inputs on one side of their values; one symbol if all rows of a field are among them."""
     rows: dict[str, list[int]] = {}
     for one in every:
         if len(one.place) > 2 and isinstance(one.place[-2], int):

@@ -1,4 +1,4 @@
-"""Published figures of a gear as lines with their sources, and in the groups that a page shows."""
+"""Published figures of a gear as lines with their sources, and in the groups of a page."""
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -16,7 +16,7 @@ from hpn.words.wording import N_, Named, Quantity, Sentence, listed
 T = TypeVar("T")
 
 FIGURES = tuple(name for name in GEAR if suffix_of(name))
-"""Published figures, in the order in which they are listed."""
+"""Published figures, in the order of their lists."""
 
 GROUPS: Mapping[str, str] = {
     "rated_torque_Nm": N_("Torque at the output"),
@@ -27,7 +27,7 @@ GROUPS: Mapping[str, str] = {
     "inertia_kgm2": N_("At the input"),
     "clamp_bolts": N_("Bolts"),
 }
-"""Titles of the groups of a page, by the figure that each begins with."""
+"""Titles of a page's groups, by the first figure of each."""
 
 RANGES: Mapping[str, tuple[str, str, str]] = {
     "ambient_temperature_minimum_degC": (
@@ -36,14 +36,14 @@ RANGES: Mapping[str, tuple[str, str, str]] = {
     ),
     "length_min_mm": ("length_max_mm", "length", N_("Length, depending on the motor")),
 }
-"""Figures that begin a range: the figure that ends it, and the code and name of both."""
+"""Figures at the beginning of a range -> the figure at its end, and code and name of the range."""
 
 AT_MOST = ("backlash_arcmin", "transmission_accuracy_arcmin")
-"""Figures that are published as an upper limit."""
+"""Figures published as an upper limit."""
 
 
 def published(gear: Gear | None) -> list[Line]:
-    """Every published figure of a gear, None where its source has none; nothing of a gear that is not known."""
+    """Every published figure of a gear, None if its source lacks it; empty for an unknown gear."""
     return [line_of(gear, name) for name in FIGURES] if gear else []
 
 
@@ -63,7 +63,7 @@ def line_of(gear: Gear, name: str) -> Line:
 
 
 def groups_of(gear: Gear) -> list[tuple[str, list[Line]]]:
-    """The same by group, ranges as one line."""
+    """Published figures of a gear by group, ranges as one line."""
     return grouped(ranged(published(gear)), lambda line: line.code)
 
 
@@ -85,14 +85,14 @@ _GROUP_OF |= {code: _GROUP_OF[first] for first, (_, code, _) in RANGES.items()}
 
 
 def ranged(lines: list[Line]) -> list[Line]:
-    """Published figures with each range as one line; of equal ends, or where one is missing, the number alone."""
-    by_name = {_name(line): line for line in lines}
+    """Published figures with each range as one line; a single number for equal ends, or if one end is missing."""
+    by_name = {line.field: line for line in lines}
     ends = {end for end, _, _ in RANGES.values()}
     return [_range(line, by_name) if name in RANGES else line for name, line in by_name.items() if name not in ends]
 
 
 def _range(first: Line, by_name: Mapping[str, Line]) -> Line:
-    end, code, name = RANGES[_name(first)]
+    end, code, name = RANGES[first.field]
     values = list(dict.fromkeys(one.value for one in (first, by_name[end]) if isinstance(one.value, float | int)))
     named = next((one for one in (first, by_name[end]) if one.value is not None), first)
     return Line(
@@ -107,12 +107,10 @@ def _range(first: Line, by_name: Mapping[str, Line]) -> Line:
     )
 
 
-def _name(line: Line) -> str:
-    return line.code.removeprefix("gear.")
-
-
 def whole(catalogue: Catalogue, designation: str) -> list[Line]:
-    """All that a catalogue says of a gear: figures, ranges as one line, bolts, curves and note; nothing without it."""
+    """All data of a gear in a catalogue: figures, ranges as one line, bolts, curves and note; empty for an unknown
+    gear.
+    """
     gear = catalogue.by_designation.get(designation)
     if gear is None:
         return []
@@ -125,7 +123,7 @@ def whole(catalogue: Catalogue, designation: str) -> list[Line]:
 
 
 def of_motor(catalogue: Catalogue, designation: str) -> list[Line]:
-    """Figures of a listed motor; nothing where the catalogue lacks it."""
+    """Figures of a listed motor; empty if the catalogue lacks it."""
     motor = catalogue.motor_by_designation.get(designation)
     names = [name for name in MOTOR if suffix_of(name)] if motor else []
     return [Line(f"motor.{name}", MOTOR[name], getattr(motor, name), suffix_of(name), "published") for name in names]
@@ -141,7 +139,7 @@ def _curves(catalogue: Catalogue, gear: Gear) -> Iterator[Line]:
 
 
 def _points(code: str, name: str, *columns: FloatArray) -> Line:
-    """Points of a curve as one line, their coordinates as they were supplied."""
+    """Points of a curve as one line, with the supplied coordinates."""
     points = [point for point in zip(*(column.tolist() for column in columns), strict=True)]
     values = {f"x{at}_{axis}": Quantity(x, "", 12) for at, point in enumerate(points) for axis, x in enumerate(point)}
     texts = (" / ".join(f"{{x{at}_{axis}}}" for axis in range(len(columns))) for at in range(len(points)))

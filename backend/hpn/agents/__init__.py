@@ -1,1 +1,1 @@
-"""Tools for agents: the answer to an application in brief, the reason for one gear, and the catalogue."""
+"""Tools for agents: a brief answer to an application, the reasons for or against one gear, and the catalogue."""

@@ -1,4 +1,4 @@
-"""A selection in brief: what an agent has to say, in a few thousand characters, out of the account that pages show."""
+"""Selection in brief for an agent: a few thousand characters, from the account that pages show."""
 
 import json
 from collections.abc import Mapping
@@ -14,22 +14,22 @@ from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
 
 DIGITS = 6
-"""Significant digits of a number; the link and POST /api/v1/select have all of them."""
+"""Significant digits of a number; the link and POST /api/v1/select have all digits."""
 
 MOST_BYTES = 3900
-"""Of an answer as it travels: a string of JSON in ASCII, with its quotes escaped."""
+"""Most bytes of an answer in transport: a string of JSON in ASCII, with its quotes escaped."""
 MOST_LINK = 1000
 LONG_LINK = "longer than an answer: POST the application to /api/v1/selections and share the address of what is saved"
 MOST_NEXT, MOST_NOTICES = 4, 8
 SPARE = ("figures", "notices", "next", "duty", "not_published", "fits_if", "over_tolerance")
-"""Parts that make room where an answer is too long, the first first; of lists an item at a time."""
+"""Parts to leave out of a too long answer, the first one first; lists lose an item at a time."""
 
 UNLIMITED = "unlimited"
 ENGLISH = Reader("en")
 
 
 def brief(account: Account, service: str, *, explained: bool) -> dict[str, Any]:
-    """Decision, limits with their sources, next gears and link; of a gear to be explained also what it needs."""
+    """Decision, limits with their sources, next gears and link; for an explained gear also the changes to fit it."""
     selection, candidate = account.selection, account.candidate
     return {
         "selected": selection.selected,
@@ -39,30 +39,27 @@ def brief(account: Account, service: str, *, explained: bool) -> dict[str, Any]:
         **_sentences(account, explained),
         "limits": _limits(account),
         "duty": {name: number(getattr(selection.duty, name)) for name in DUTY},
-        "figures": {
-            line.code.removeprefix("candidate."): number(line.value)
-            for line in account.figures
-            if isinstance(line.value, float)
-        },
+        "figures": {line.field: number(line.value) for line in account.figures if isinstance(line.value, float)},
         "next": [_beside(one) for one in selection.candidates if one is not candidate][:MOST_NEXT],
         "notices": [notice.text for notice in selection.notices][:MOST_NOTICES],
+        **({"left_out": ["notices"]} if len(selection.notices) > MOST_NOTICES else {}),
         "link": link if len(link := service + selection.link) <= MOST_LINK else LONG_LINK,
         "versions": {"engine": selection.engine_version, "catalogue": selection.catalogue_version},
     }
 
 
 def _sentences(account: Account, explained: bool) -> dict[str, Any]:
-    """Figures that a gear lacks, its remedy, and its place over the tolerances, as far as there are any."""
+    """Missing figures of a gear, its remedy, and its verdict over the tolerances, as far as there are any."""
     candidate = account.candidate
-    said: dict[str, Sentence | None] = {"over_tolerance": tolerance_of(candidate)}
+    sentences: dict[str, Sentence | None] = {"over_tolerance": tolerance_of(candidate)}
     if explained and account.application is not None and account.catalogue is not None:
-        said["fits_if"] = remedy_of(candidate, needed_of(candidate, account.application, account.catalogue))
-    asked = {"ask_for": list(candidate.missing)} if candidate.missing else {}
-    return asked | {name: sentence.text for name, sentence in said.items() if sentence}
+        sentences["fits_if"] = remedy_of(candidate, needed_of(candidate, account.application, account.catalogue))
+    missing = {"ask_for": list(candidate.missing)} if candidate.missing else {}
+    return missing | {name: sentence.text for name, sentence in sentences.items() if sentence}
 
 
 def _limits(account: Account) -> dict[str, Any]:
-    """Each check as a row: what it needs, what there is, and where that stands."""
+    """Row for each check: demand, relation, limit, unit, utilisation, status and source."""
     columns = ["check", "demand", "is", "limit", "unit", "utilisation", "status", "source"]
     return {"columns": columns, "rows": [_row(check) for check in account.checks]}
 
@@ -71,7 +68,7 @@ def _row(check: CheckLine) -> list[Any]:
     reading, result = check.reading, check.result
     demand = UNLIMITED if reading.has_unlimited_demand else number(reading.demand)
     limit = UNLIMITED if reading.has_unlimited_limit else number(reading.limit)
-    sign = "?" if result.status == "not_rated" else reading.found(result.status == "fail")
+    sign = "?" if result.status == "not_rated" else reading.actual_sign(result.status == "fail")
     used = number(result.utilisation)
     return [check.definition.title, demand, sign, limit, reading.unit, used, result.status, check.where(ENGLISH)]
 
@@ -86,24 +83,24 @@ def _beside(candidate: Candidate) -> dict[str, Any]:
 
 
 def number(value: object) -> float | None:
-    """A number with the digits that an answer has; None for what is none."""
+    """Number with DIGITS digits; None for any other value."""
     return float(f"{value:.{DIGITS}g}") if isinstance(value, int | float) else None
 
 
 def encoded(value: object) -> str:
-    """JSON without blanks, in the characters that people read."""
+    """JSON without blanks, in characters that are not escaped."""
     return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("\N{NARROW NO-BREAK SPACE}", " ")
 
 
 def within(reply: Mapping[str, Any]) -> str:
-    """Text of a reply, without what makes it too long; it names what it leaves out."""
-    kept, left = dict(reply), list[str]()
+    """Text of a reply within MOST_BYTES; it names the parts left out."""
+    rest, left = dict(reply), list[str](reply.get("left_out", ()))
     for name in SPARE:
-        while name in kept and len(json.dumps(encoded(kept))) > MOST_BYTES:
-            if isinstance(kept[name], list) and len(kept[name]) > 1:
-                kept[name] = kept[name][:-1]
+        while name in rest and len(json.dumps(encoded(rest))) > MOST_BYTES:
+            if isinstance(rest[name], list) and len(rest[name]) > 1:
+                rest[name] = rest[name][:-1]
             else:
-                del kept[name]
+                del rest[name]
             left = [*left, name] if name not in left else left
-            kept["left_out"] = left
-    return encoded(kept)
+            rest["left_out"] = left
+    return encoded(rest)

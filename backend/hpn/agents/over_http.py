@@ -1,4 +1,4 @@
-"""One exchange of the protocol over HTTP: a request whose body has been read, answered as JSON, without sessions."""
+"""Exchange of the protocol over HTTP: a request whose body has been read, answered as JSON, without sessions."""
 
 import asyncio
 from collections.abc import MutableMapping
@@ -28,7 +28,7 @@ async def exchange(call: Call, scope: Message, body: bytes) -> TransportReply:
 
     async def receive() -> Message:
         if not pieces:
-            await asyncio.Event().wait()  # whether the client has left is looked at where the answer is computed
+            await asyncio.Event().wait()  # the client's leaving is noticed where the answer is computed
         return {"type": "http.request", "body": pieces.pop(), "more_body": False}
 
     async def send(message: Message) -> None:

@@ -1,4 +1,4 @@
-"""Descriptions of the tools: short, since an agent carries them along in every conversation."""
+"""Descriptions of the tools, kept short: an agent carries them along in every conversation."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -76,4 +76,4 @@ TOOLS: Mapping[str, tuple[str, Schema]] = {
         _object({"designation": DESIGNATION}),
     ),
 }
-"""Description and schema of each tool by its name."""
+"""Description and schema of each tool, by its name."""

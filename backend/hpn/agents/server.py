@@ -1,4 +1,4 @@
-"""The tools as a server of the Model Context Protocol, by its official SDK, whatever carries its messages."""
+"""Tools as a server of the Model Context Protocol, by its official SDK, for any transport."""
 
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
@@ -16,11 +16,11 @@ ONLY_READS = types.ToolAnnotations(
 )
 
 Call = Callable[[str, Mapping[str, Any]], Awaitable[ToolReply]]
-"""Answer of a tool by its name and arguments, wherever it is computed."""
+"""Function that answers a tool by its name and arguments, in any process."""
 
 
 def server_of(call: Call) -> Server[Any]:
-    """The server whose tools a function answers."""
+    """Server whose tools a function answers."""
 
     async def listed(_: ServerRequestContext[Any], __: types.PaginatedRequestParams | None) -> types.ListToolsResult:
         tools = [
@@ -29,8 +29,8 @@ def server_of(call: Call) -> Server[Any]:
         ]
         return types.ListToolsResult(tools=tools)
 
-    async def called(_: ServerRequestContext[Any], asked: types.CallToolRequestParams) -> types.CallToolResult:
-        answer = await call(asked.name, asked.arguments or {})
+    async def called(_: ServerRequestContext[Any], params: types.CallToolRequestParams) -> types.CallToolResult:
+        answer = await call(params.name, params.arguments or {})
         return types.CallToolResult(content=[types.TextContent(text=answer.text)], is_error=answer.is_refusal)
 
     return Server(

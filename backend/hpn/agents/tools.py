@@ -1,4 +1,4 @@
-"""The three tools: arguments in, a short text of JSON out, or a refusal that says what to ask the user for."""
+"""Three tools: arguments in, a short JSON text out, or a refusal with the question for the user."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -14,36 +14,37 @@ from hpn.agents.schema import TOOLS
 from hpn.application import Application, InputError
 from hpn.application.faults import Location, faults_of, pointer
 from hpn.catalogue import Catalogue
-from hpn.engine.selection import judge
+from hpn.engine.selection import select, with_gear
 from hpn.links.writer import to_link
 from hpn.words.quantities import INPUTS
 from hpn.words.units import symbol_of
+from hpn.words.wording import shortened
 
 MOST_FAULTS = 8
 MOST_REPEATED = 160
-"""Characters of a place or text in a refusal, which may be the caller's own."""
+"""Most characters of a place or text in a refusal; it may be the caller's own."""
 
 ASK = "Nothing was calculated. Ask the user for what is lacking or wrong here, and make nothing up:"
 
 
 class ToolReply(NamedTuple):
-    """Text of an answer; a refusal says what is to be asked for."""
+    """Text of an answer, or of a refusal with the question for the user."""
 
     text: str
     is_refusal: bool = False
 
     @classmethod
     def refusal(cls, text: str) -> "ToolReply":
-        """A refusal, which may repeat what no text can hold."""
+        """Refusal; characters that no text can hold are replaced, since it may repeat the caller's."""
         return cls(text.encode(errors="replace").decode(), True)
 
 
 class _RefusedError(ValueError):
-    """Arguments that a tool can't use, with the reason."""
+    """Error of unusable arguments, with the reason."""
 
 
 def answer(tool: str, arguments: Mapping[str, Any], catalogue: Catalogue, service: str) -> ToolReply:
-    """Answer of a tool; `service` is the address that links lead to, without a slash at its end."""
+    """Answer of a tool; `service` is the address for links, without a slash at its end."""
     try:
         _require_known(tool, arguments)
         if tool == "catalogue":
@@ -54,7 +55,7 @@ def answer(tool: str, arguments: Mapping[str, Any], catalogue: Catalogue, servic
     except _RefusedError as error:
         return ToolReply.refusal(str(error))
     except (ValidationError, InputError) as error:
-        return ToolReply.refusal(_told(error))
+        return ToolReply.refusal(_refusal(error))
 
 
 def _require_known(tool: str, arguments: Mapping[str, Any]) -> None:
@@ -73,28 +74,25 @@ def _require_known(tool: str, arguments: Mapping[str, Any]) -> None:
 
 
 def _judged(application: Application, designation: str | None, catalogue: Catalogue, service: str) -> dict[str, Any]:
-    judged = judge(application, catalogue)
-    selection = judged.selection(to_link)
-    candidate = selection.foremost
-    if designation is not None:
-        name = _gear(designation, catalogue)
-        left_out = () if selection.candidate(name) else judged.left_out()
-        candidate = selection.candidate(name) or next(one for one in left_out if one.designation == name)
-    return brief(Account(selection, candidate, application, catalogue), service, explained=designation is not None)
+    selection = select(application, catalogue, to_link)
+    gear = None if designation is None else _gear(designation, catalogue)
+    selection = with_gear(selection, application, catalogue, gear or "")
+    candidate = selection.candidate(gear or "") or selection.foremost
+    return brief(Account(selection, candidate, application, catalogue), service, explained=gear is not None)
 
 
 def _gear(designation: str, catalogue: Catalogue) -> str:
-    """Designation as the catalogue has it."""
-    found = catalogue.find(designation)
-    if found is None:
+    """Designation in the catalogue's spelling; raises _RefusedError for an unknown gear."""
+    gear = catalogue.find(designation)
+    if gear is None:
         gears = ", ".join(catalogue.by_designation)
         text = f"the catalogue has no gear {designation[:MOST_REPEATED]!r}; there are {gears}"
         raise _RefusedError(text)
-    return found.designation
+    return gear.designation
 
 
 def _catalogue(designation: str | None, catalogue: Catalogue, service: str) -> dict[str, Any]:
-    """Every gear, or the figures of one."""
+    """Designations of all gears, or the figures of one."""
     versions = {"engine": ENGINE_VERSION, "catalogue": catalogue.version}
     if designation is None:
         return {"gears": list(catalogue.by_designation), "link": f"{service}/catalogue", "versions": versions}
@@ -107,7 +105,7 @@ def _catalogue(designation: str | None, catalogue: Catalogue, service: str) -> d
             "columns": ["figure", "value", "unit", "source"],
             "rows": [_row(line) for line in published(gear) if line.value is not None],
         },
-        "not_published": [_field(line) for line in published(gear) if line.value is None],
+        "not_published": [line.field for line in published(gear) if line.value is None],
         "link": f"{service}/catalogue/{gear.designation}",
         "versions": versions,
     }
@@ -115,25 +113,19 @@ def _catalogue(designation: str | None, catalogue: Catalogue, service: str) -> d
 
 def _row(line: Line) -> list[Any]:
     value = line.value if isinstance(line.value, str) else number(line.value)
-    return [_field(line), value, symbol_of(line.code), line.source.text if line.source else ""]
-
-
-def _field(line: Line) -> str:
-    return line.code.removeprefix("gear.")
+    return [line.field, value, symbol_of(line.code), line.source.text if line.source else ""]
 
 
 # --- Refusals ---------------------------------------------------------------------------------------------------------
 
 
-def _told(error: ValidationError | InputError) -> str:
-    """Faults of an application, each with its place and the name and unit of what belongs there."""
-    faults = faults_of(error)
+def _refusal(error: ValidationError | InputError) -> str:
+    """Faults of an application, each with its place and the name and unit of that input."""
     lines = [
         f"{(pointer(at) or '/')[:MOST_REPEATED]}{_named(at)}: {text[:MOST_REPEATED]}"
-        for at, text, _ in faults[:MOST_FAULTS]
+        for at, text, _ in faults_of(error)
     ]
-    more = [f"and {len(faults) - MOST_FAULTS} more"] if len(faults) > MOST_FAULTS else []
-    return "\n".join((ASK, *lines, *more))
+    return "\n".join((ASK, *shortened(lines, MOST_FAULTS)))
 
 
 def _named(location: Location) -> str:

@@ -1,4 +1,4 @@
-"""The application: what a person asks, its phases or motion, and the faults of an input."""
+"""The application: the user's inputs, its phases or motion, and the faults of an input."""
 
 from hpn.application.application import (
     LEAST_MOTION,
@@ -13,21 +13,21 @@ from hpn.application.application import (
     RankBy,
 )
 from hpn.application.faults import InputError, Location
+from hpn.application.motor import FURTHER_FIGURES, LISTED_FIGURES, CurvePoint, Motor
 from hpn.application.pairing import MOST_MOTORS, MotorEntry, Pairing, PairRank
 from hpn.application.requirements import (
     BEARING_LIFE_H,
-    LISTED_FIGURES,
     MOST_WISHES,
     BearingModel,
     Drive,
     LifeBasis,
-    Motor,
     OutputLoad,
     Requirements,
 )
 
 __all__ = [
     "BEARING_LIFE_H",
+    "FURTHER_FIGURES",
     "LEAST_MOTION",
     "LISTED_FIGURES",
     "MOST_MOTORS",
@@ -39,6 +39,7 @@ __all__ = [
     "BatchItem",
     "BearingModel",
     "Brake",
+    "CurvePoint",
     "Drive",
     "DutyCycle",
     "EmergencyStop",

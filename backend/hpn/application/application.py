@@ -1,4 +1,4 @@
-"""Input models of an application: the one set behind form, link, REST, batch, command line and file.
+"""Input models of an application, the same for form, link, REST, batch, command line and file.
 
 Torque, speed and load may be signed; the equations take their magnitudes.
 """
@@ -10,8 +10,9 @@ from pydantic import Field, ValidationInfo, WrapValidator, field_validator, mode
 from pydantic_core import PydanticCustomError
 
 from hpn.application.motion import Motion
+from hpn.application.motor import Motor
 from hpn.application.phase import Phase
-from hpn.application.requirements import Motor, OutputLoad, Requirements
+from hpn.application.requirements import OutputLoad, Requirements
 from hpn.application.tolerances import Interval, Tolerances, intervals_of
 from hpn.words.fields import (
     MAXIMUM_PHASES,
@@ -47,7 +48,7 @@ ApplicationArea = Literal[
 
 
 LEAST_MOTION = 1e-100
-"""Product of speed and duration up to which a phase rests: the sums of eq. 17.2 and 17.4 would vanish."""
+"""Product of speed and duration up to which a phase is at rest: the sums of eq. 17.2 and 17.4 would vanish."""
 
 
 SHAFT_OF_MOTION = N_("needs the motion of a rack or belt with ratio 1, whose pinion or pulley sits on the gear’s shaft")
@@ -57,7 +58,7 @@ PHASES: Any = Field(min_length=1, max_length=MAXIMUM_PHASES)
 
 
 class DutyCycle(Model):
-    """Load phases or the motion that they come from, exactly one of both, and the pause t_p that follows them."""
+    """Either load phases or a motion, exactly one of the two, and the pause t_p after them."""
 
     phases: Annotated[tuple[Phase, ...], PHASES, WrapValidator(in_parts), at_most(MAXIMUM_PHASES)] | None = Field(
         None, description="Load phases; at least one moves."
@@ -91,22 +92,30 @@ class DutyCycle(Model):
 
     @property
     def load_phases(self) -> tuple[Phase, ...]:
-        """Its phases, as they are typed or as they come out of the motion."""
+        """Its phases, typed or from the motion."""
         return self.motion.phases if self.motion is not None else self.phases or ()
 
     @property
+    def is_loaded(self) -> bool:
+        """True if a phase or a move has its own load."""
+        parts = self.phases or () if self.motion is None else self.motion.moves
+        return any(part.radial_N is not None or part.axial_N is not None for part in parts)
+
+    @property
     def rests(self) -> bool:
-        """True where it has a pause, or a phase at speed 0."""
+        """True if it has a pause, or a phase at speed 0."""
         return self.pause_s > 0 or any(phase.speed_rpm == 0 for phase in self.load_phases)
 
     @property
     def rest_friction_Nm(self) -> float:
-        """Largest torque at the gear by which dry friction may hold a motion at rest; 0 of phases, 0 without rest."""
+        """Largest torque in Nm at the gear that dry friction may hold in a motion's rest; 0 for phases, 0
+        without rest.
+        """
         if self.motion is None:
             return 0.0
-        held = [abs(phase.torque_Nm) for phase in self.motion.phases if phase.speed_rpm == 0]
-        held += [0.0] if self.pause_s > 0 else []
-        return float(self.motion.mechanism.load.rest_friction_Nm(max(held))) if held else 0.0
+        at_rest = [abs(phase.torque_Nm) for phase in self.motion.phases if phase.speed_rpm == 0]
+        at_rest += [0.0] if self.pause_s > 0 else []
+        return float(self.motion.mechanism.load.rest_friction_Nm(max(at_rest))) if at_rest else 0.0
 
 
 class Brake(Model):
@@ -115,27 +124,27 @@ class Brake(Model):
     torque_Nm: Positive = Field(description="Largest torque T_B of the brake, at the motor.", examples=[8.0])
     rise_time_s: Seconds = Field(0.0, description="Time t_b in which the brake’s torque rises.", examples=[0.005])
     reaction_time_s: Seconds = Field(
-        0.0, description="Time t_r from the command until the brake’s torque begins to rise.", examples=[0.02]
+        0.0, description="Time t_r from the stop command until the brake’s torque begins to rise.", examples=[0.02]
     )
     speed_rpm: MovingSpeed | None = Field(
-        None, description="Output speed n_b at the command; by default the largest of the cycle.", examples=[250.0]
+        None, description="Output speed n_b at the stop command; by default the largest of the cycle.", examples=[250.0]
     )
     load_torque_Nm: TorqueMagnitude | None = Field(
         None,
         description="Largest torque T_L of weight and process force at the gear, by magnitude; a motion has its own. "
-        "Without it the load counts as one that no force pulls.",
+        "Without it, no force is assumed to pull the load.",
         examples=[12.0],
     )
     opposing_torque_Nm: TorqueMagnitude | None = Field(
         None,
-        description="The same T_o with friction and the acceleration’s J α, at least T_L and by default it; a motion "
-        "has its own.",
+        description="Largest torque T_o: T_L with friction and the acceleration’s J α; at least T_L and by default "
+        "T_L. A motion has its own.",
         examples=[15.0],
     )
     dynamic_factor: Annotated[Number, Field(ge=1, le=10)] | None = Field(
         None,
-        description="Your own dynamic factor f: the stop then has T_k = f T_r + (f − 1) T_o; by default the bound that "
-        "backlash and both flanks give.",
+        description="Your own dynamic factor f: T_k = f T_r + (f − 1) T_o; by default the bound that follows from "
+        "backlash and both flanks.",
         examples=[2.0],
     )
 
@@ -148,11 +157,11 @@ class Brake(Model):
 
 
 STOP_LOADS = ("load_torque_Nm", "opposing_torque_Nm")
-"""Torques of the load in a stop by the brake that typed phases lack and a motion has."""
+"""Torques of the load in a stop by the brake, which typed phases lack and a motion provides."""
 
 
 class EmergencyStop(Model):
-    """Emergency-stop torque T_k, or the brake that causes it, and how often it is expected over the life."""
+    """Emergency-stop torque T_k, or the brake that causes it, and the expected number of stops over the life."""
 
     torque_Nm: Torque | None = Field(None, description="Emergency-stop torque T_k.", examples=[200.0])
     brake: Brake | None = Field(
@@ -174,10 +183,10 @@ class EmergencyStop(Model):
 
 
 class Application(Model):
-    """One axis: its duty cycle, its loads, and what is required of the gear."""
+    """One axis: its duty cycle, its loads, and the requirements on the gear."""
 
     duty_cycle: DutyCycle = Field(description="Load phases and pause of the axis.")
-    emergency_stop: EmergencyStop | None = Field(None, description="Emergency stop, where there is one.")
+    emergency_stop: EmergencyStop | None = Field(None, description="Emergency stop, if any.")
     output_load: OutputLoad | None = Field(
         None, description="Load on the output shaft and the required life of its bearing."
     )
@@ -188,10 +197,14 @@ class Application(Model):
     rank_by: RankBy = Field("weight", description="Order of the suitable gears.")
     tolerances: Tolerances | None = Field(
         None,
-        description="How far inputs may lie from their values, by their paths: torque_Nm for that of every phase, "
-        "phases.1.torque_Nm (from 0) for one, pause_s, emergency_stop.torque_Nm, motion.mechanism.mass_kg.",
+        description="Tolerances of inputs by their paths: torque_Nm for every phase, phases.1.torque_Nm for one "
+        "(counted from 0), pause_s, emergency_stop.torque_Nm, motion.mechanism.mass_kg.",
         examples=[{"torque_Nm": {"percent": 10.0}}],
     )
+
+    def requiring(self, **changes: Any) -> "Application":
+        """The application with other values of its requirements, which are not validated again."""
+        return self.model_copy(update={"requirements": self.requirements.model_copy(update=changes)})
 
     @field_validator("tolerances")
     @classmethod
@@ -206,7 +219,7 @@ class Application(Model):
 
     @property
     def intervals(self) -> tuple[Interval, ...]:
-        """Inputs that have a tolerance, with their ends."""
+        """Inputs with a tolerance, and their ends."""
         return intervals_of(self, self.tolerances) if self.tolerances else ()
 
     @field_validator("emergency_stop")
@@ -234,7 +247,7 @@ class Application(Model):
             raise refused(load, (("drive",), PydanticCustomError("drive_twice", DRIVE_OF_PHASES)))
         if load.from_motion or load.drive is not None or load.radial_N is not None or load.axial_N is not None:
             return load
-        if any(phase.radial_N is not None or phase.axial_N is not None for phase in cycle.load_phases):
+        if cycle.is_loaded:
             return load
         raise PydanticCustomError(
             "no_load", "no load is given: state radial_N or axial_N here or in a phase, or leave output_load out"
@@ -293,16 +306,16 @@ class Application(Model):
 
     @property
     def loads(self) -> OutputLoad | None:
-        """Conditions of the output load, or None where neither the cycle nor a phase carries a load."""
-        if self.output_load is None:
-            for phase in self.duty_cycle.load_phases:
-                if phase.radial_N is not None or phase.axial_N is not None:
-                    return OutputLoad()
+        """Conditions of the output load, or None if neither the cycle nor a phase has a load."""
+        if self.output_load is None and self.duty_cycle.is_loaded:
+            return OutputLoad()
         return self.output_load
 
     @property
     def shaft_drive(self) -> str:
-        """Pinion (`rack_and_pinion`) or pulley (`belt`) on the gear's shaft whose load counts; blank for none."""
+        """Pinion (`rack_and_pinion`) or pulley (`belt`) on the gear's shaft with a load that counts; blank
+        without one.
+        """
         load, motion = self.output_load, self.duty_cycle.motion
         if load is None or (load.drive is None and not load.from_motion):
             return ""
@@ -334,4 +347,4 @@ WORKED_EXAMPLE: Mapping[str, Any] = {
     "emergency_stop": {"torque_Nm": 200.0},
     "requirements": {"ratios": [5]},
 }
-"""Inputs as printed on the handbook's page 18."""
+"""Inputs of the example on the handbook's page 18."""

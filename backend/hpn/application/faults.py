@@ -1,4 +1,4 @@
-"""Faults of an input: where, in words that say what would be right, and a code for programs."""
+"""Faults of an input: their places, texts that name the remedy, and codes for programs."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -14,18 +14,30 @@ from hpn.words.wording import N_, Sentence, Value
 Location = tuple[str | int, ...]
 
 LISTED_ERRORS = 5000
-"""Most errors that are listed; of more the number alone is given."""
+"""Errors, at most, that are listed; if there are more, only their number is given."""
 
 REQUIRED = N_("is required")
 SHOULD = re.compile("(?:Input|Tuple|String) should")
 NOT_AVAILABLE = "not_available"
-"""Code of an input that the catalogue has no answer to."""
+"""Code of an input without an answer in the catalogue."""
 
-NOT_A_NUMBER = N_("must be a number, such as 9.3")
+PHASE_INPUT, MOVE_INPUT = N_("{input} of phase {number}"), N_("{input} of move {number}")
+"""Inputs of a phase or a move, in a sentence."""
+
+OF_PHASE, OF_ROW = N_("phase {number}: {reason}"), N_("row {number}: {reason}")
+_PLACED = {OF_PHASE: PHASE_INPUT, OF_ROW: N_("{input} in row {number}")}
+"""Texts with the place of an input, and its name with this place."""
+
+_PREDICATE = re.compile("(?:is|must|may|has|needs|gives|does|selects|takes) ")
+"""Begin of an English text that is a sentence behind the name of its input."""
+
+NOT_A_NUMBER, NOT_AN_INTEGER = N_("must be a number, such as 9.3"), N_("must be a whole number, such as 5")
+A_TIME = N_("must be a date or time, such as 2026-11-27 or 2026-11-27T08:00:00Z")
+NOT_JSON_NUMBER, NOT_JSON_INTEGER = N_("must be a JSON number, such as 9.3"), N_("must be a JSON integer, such as 5")
 
 
 class InputError(ValueError):
-    """Input that is well formed but can't be answered; `problems` are (location, detail) pairs, in English."""
+    """Well-formed input that can't be answered; `problems` are (location, detail) pairs, in English."""
 
     def __init__(self, *sentences: tuple[Location, Sentence]) -> None:
         self.sentences = sentences
@@ -33,7 +45,7 @@ class InputError(ValueError):
         super().__init__("; ".join(detail for _, detail in self.problems))
 
     def below(self, name: str) -> "InputError":
-        """The same of an application that is a field of something else."""
+        """The error for an application that is a field of another object."""
         return InputError(*(((name, *location), sentence) for location, sentence in self.sentences))
 
 
@@ -46,12 +58,26 @@ class Fault(NamedTuple):
 
 
 def faults_of(error: ValidationError | InputError) -> list[Fault]:
-    """Faults that the models or the selection have found."""
+    """Faults found by the models or the selection."""
     return [Fault(location, sentence.text, code) for location, sentence, code in sentences_of(error)]
 
 
+def fault_sentence(name: Sentence, text: Sentence) -> Sentence:
+    """Sentence on a fault with the name of its input: `Speed of phase 2 is required`."""
+    inner = text.values.get("reason")
+    if text.template in _PLACED and isinstance(inner, Sentence):
+        return fault_sentence(Sentence(_PLACED[text.template], {"input": name, "number": text.values["number"]}), inner)
+    template = N_("{input} {text}") if _PREDICATE.match(text.text) else N_("{input}: {text}")
+    return Sentence(template, {"input": name, "text": text})
+
+
+def lines_of(error: ValidationError | InputError) -> list[str]:
+    """Lines with the place and the text of each fault."""
+    return [f"{pointer(location) or '/'}: {text}" for location, text, _ in faults_of(error)]
+
+
 def sentences_of(error: ValidationError | InputError) -> list[tuple[Location, Sentence, str]]:
-    """The same with their sentences: location, sentence and code of each."""
+    """Location, sentence and code of each fault."""
     if isinstance(error, InputError):
         return [(location, sentence, NOT_AVAILABLE) for location, sentence in error.sentences]
     if error.error_count() > LISTED_ERRORS:
@@ -60,9 +86,18 @@ def sentences_of(error: ValidationError | InputError) -> list[tuple[Location, Se
 
 
 def unreadable(error: ValidationError) -> str | None:
-    """Text on an input that is no JSON; None for any other."""
-    (first, *_) = error.errors(include_url=False, include_context=False, include_input=False)
-    return first["msg"] if first["type"] == "json_invalid" else None
+    """Reason why an input is not JSON, such as "is empty"; None for any other error."""
+    (first, *_) = error.errors(include_url=False, include_context=False)
+    if first["type"] != "json_invalid":
+        return None
+    content = first["input"]
+    if not content.strip():
+        return "is empty"
+    try:
+        content if isinstance(content, str) else content.decode()
+    except UnicodeDecodeError:  # as a file of Windows PowerShell, which writes UTF-16
+        return "is not text in UTF-8"
+    return first["msg"].replace("Invalid JSON", "is not JSON")
 
 
 def pointer(location: Location) -> str:
@@ -76,7 +111,7 @@ def plain_faults(entries: Sequence[ErrorDetails]) -> list[Fault]:
 
 
 def _sentences(entries: Sequence[ErrorDetails]) -> list[tuple[Location, Sentence, str]]:
-    # A list whose items are wrong is also reported as too short; the items say it better.
+    # Pydantic also reports a list with wrong items as too short; the errors of the items are clearer.
     items = {entry["loc"][:end] for entry in entries for end in range(len(entry["loc"]))}
     singles = [entry for entry in entries if entry["type"] != "too_short" or entry["loc"] not in items]
     sentences = [sentence_of(entry) for entry in singles[:MOST_TOLD]]
@@ -85,7 +120,7 @@ def _sentences(entries: Sequence[ErrorDetails]) -> list[tuple[Location, Sentence
 
 
 MOST_TOLD = 100
-"""Errors whose sentence names the field that a misspelt one looks like, which takes a while to find."""
+"""Errors, at most, whose sentences suggest a field for a misspelt one, which takes time."""
 
 BOUNDS = {
     "greater_than_equal": N_("must be greater than or equal to {bound}"),
@@ -101,7 +136,7 @@ BOUNDS = {
 
 
 def sentence_of(entry: ErrorDetails) -> Sentence:
-    """Pydantic's message in words that say what would be right; of a misspelt field what it looks like."""
+    """Pydantic's message in words that name the remedy; for a misspelt field the likely one."""
     if entry["type"] == UNKNOWN:
         return unknown_field(str(entry["loc"][-1]), entry.get("ctx", {}).get("fields", ()))
     return _plain_sentence(entry)
@@ -117,13 +152,13 @@ def _plain_sentence(entry: ErrorDetails) -> Sentence:
     }
     if template := BOUNDS.get(entry["type"]):
         sentence = Sentence(template, {name: value for name, value in values.items() if f"{{{name}}}" in template})
-        if sentence.text == text:  # pydantic has a singular, and says more where it knows more
+        if sentence.text == text:  # pydantic has a singular, and sometimes more details
             return sentence
     return Sentence("{text}", {"text": text}, ("text",))
 
 
 def unknown_field(name: str, fields: Iterable[str]) -> Sentence:
-    """Sentence on a name that is none of the fields of an object, with the one that it looks like."""
+    """Sentence on a name that is not a field of an object, with the most similar field, if any."""
     near = likeness(name, fields)
     if near is None:
         return Sentence(NO_FIELD)
@@ -140,11 +175,15 @@ def _plain_message(entry: ErrorDetails) -> str:
         "missing": REQUIRED,
         "float_parsing": NOT_A_NUMBER,
         "finite_number": N_("must be a finite number"),
-        "float_type": N_("must be a JSON number, such as 9.3"),
-        "int_type": N_("must be a JSON integer, such as 5"),
-        "int_parsing": N_("must be a whole number, such as 5"),
+        "float_type": NOT_JSON_NUMBER,
+        "int_type": NOT_JSON_INTEGER,
+        "int_parsing": NOT_AN_INTEGER,
         "string_type": N_("must be text"),
         "bool_parsing": N_("must be true or false"),
+        "bool_type": N_("must be true or false"),
+        "datetime_parsing": A_TIME,
+        "datetime_from_date_parsing": A_TIME,
         "tuple_type": N_("must be a list"),
         "model_type": N_("must be an object"),
+        "dict_type": N_("must be an object"),
     }.get(kind) or SHOULD.sub("must", message.removeprefix("Value error, ")).replace(" after validation,", ",")

@@ -6,20 +6,24 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from pydantic import BaseModel
+
 from hpn.application import Application
 from hpn.application.phase import Phase
 from hpn.application.tolerances import WITHOUT as NO_TOLERANCE
+from hpn.physics.motion.mechanisms import CLASSES, Rotary
+from hpn.physics.motion.moves import Stroke, Turn
 
-Kind = Literal["number", "integer", "string", "boolean"]
+Kind = Literal["number", "integer", "string", "boolean", "points"]
 Json = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class InputField:
-    """One field: its place in the application, or in a phase, and what it, or each item of its list, may be.
+    """One field: its place in the application, or in a phase, and the permitted values of it or of its list's items.
 
-    `least` and `most` may be reached, `above` may not. `required` is one that any application, or any phase, has. One
-    `by_size` may also be an object of such values by size.
+    `least` and `most` may be reached, `above` may not. A `required` field is in every application, or in every phase. A
+    field `by_size` may also be an object of such values by size; one of kind `points` is a list of objects.
     """
 
     path: tuple[str, ...]
@@ -39,7 +43,7 @@ def _fields_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -
     for name, entry in schema["properties"].items():
         place = (*path, name)
         if place in (("duty_cycle", "phases"), ("duty_cycle", "motion"), ("tolerances",)):
-            continue  # the fields of a phase stand by themselves, and a tolerance by the path of its input
+            continue  # a phase has its own table of fields, and a tolerance has the path of its input
         shape = _resolved(entry, definitions)
         if "properties" in shape:
             yield from _fields_below(shape, definitions, place)
@@ -48,13 +52,13 @@ def _fields_below(schema: Json, definitions: Json, path: tuple[str, ...] = ()) -
 
 
 def _resolved(entry: Json, definitions: Json) -> Json:
-    """Schema of a field without its null, its reference, and the object by size that a value may be instead."""
+    """Schema of a field, its reference resolved, without null and without the alternative object by size."""
     entry = next((option for option in _options(entry) if option.get("type") != "null"), entry)
     return dict(definitions[entry["$ref"].rsplit("/", 1)[1]]) if "$ref" in entry else entry
 
 
 def _options(entry: Json) -> list[Json]:
-    """Schemas of which a field has one, values before objects of them; none where it has a single one."""
+    """Alternative schemas of a field, values before objects of them; empty for a single schema."""
     options: Iterable[Json] = entry.get("anyOf", ()) or entry.get("oneOf", ())
     return sorted(options, key=_is_by_size)
 
@@ -65,10 +69,11 @@ def _is_by_size(option: Json) -> bool:
 
 def _field(path: tuple[str, ...], entry: Json, shape: Json, *, required: bool) -> InputField:
     item = shape["items"] if shape["type"] == "array" else shape
+    is_points = "$ref" in item
     return InputField(
         path=path,
-        kind=item["type"],
-        is_list=shape["type"] == "array",
+        kind="points" if is_points else item["type"],
+        is_list=shape["type"] == "array" and not is_points,
         required=required,
         default=entry.get("default"),
         least=item.get("minimum", -math.inf),
@@ -94,25 +99,41 @@ PHASE_FIELDS: Mapping[str, InputField] = {field.path[0]: field for field in _of_
 """Fields of a phase by name."""
 
 PHASE_FIGURES = tuple(name for name, field in PHASE_FIELDS.items() if field.kind == "number")
-"""Those that are numbers: all but its name."""
+"""Fields of a phase that are numbers: all except its name."""
 
 FIELDS: Mapping[str, InputField] = {".".join(field.path): field for field in _of_application()}
-"""Fields outside of the phases and the motion by their path: `requirements.life_h`."""
+"""Fields outside the phases and the motion by their path: `requirements.life_h`."""
 
 ONE_PHASE = re.compile(r"phases\.(?:0|[1-9][0-9]{0,4})\.([A-Za-z_]+)")
-MOTION = re.compile(r"motion\.(?:mechanism|moves\.(?:0|[1-9][0-9]{0,4}))\.[A-Za-z_]+")
+OF_MOTION = re.compile(r"motion\.(?:(mechanism)\.|(moves)\.(?:0|[1-9][0-9]{0,4})\.)?([A-Za-z0-9_]+)")
+
+
+def _motion_figures(*models: type[BaseModel]) -> frozenset[str]:
+    """Numbers of a motion's parts by name."""
+    entries = ((name, entry) for model in models for name, entry in model.model_json_schema()["properties"].items())
+    return frozenset(name for name, entry in entries if _resolved(entry, {}).get("type") == "number")
+
+
+MOTION_FIGURES: Mapping[str, frozenset[str]] = {
+    "mechanism": _motion_figures(Rotary, *CLASSES.values()),
+    "moves": _motion_figures(Turn, Stroke),
+    "": frozenset(("start_deg",)),
+}
+"""Numbers of a motion by its part."""
 
 
 def takes_tolerance(path: str) -> bool:
-    """True for a path of an input that takes a tolerance in some application."""
+    """True for the path of an input that takes a tolerance in some application."""
     if match := ONE_PHASE.fullmatch(path):
         return match[1] in PHASE_FIGURES
     if path in NO_TOLERANCE or path.startswith("duty_cycle"):
         return False
     field = FIELDS.get("duty_cycle.pause_s" if path == "pause_s" else path)
     is_number = field is not None and field.kind == "number" and not field.is_list
-    return path in PHASE_FIGURES or is_number or MOTION.fullmatch(path) is not None
+    if match := OF_MOTION.fullmatch(path):
+        return match[3] in MOTION_FIGURES[match[1] or match[2] or ""]
+    return path in PHASE_FIGURES or is_number
 
 
 NUMBERS = tuple(field.path for field in FIELDS.values() if field.kind in ("number", "integer") and not field.is_list)
-"""Path of every single number of an application but its motion: ("requirements", "motor", "peak_torque_Nm")."""
+"""Paths of all single numbers of an application outside its motion: ("requirements", "motor", "peak_torque_Nm")."""

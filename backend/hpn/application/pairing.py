@@ -1,4 +1,4 @@
-"""A request for pairs of gear and motor: an application without a motor, motors, and how the pairs are ordered."""
+"""A request for pairs of gear and motor: an application without a motor, motors, and the order of the pairs."""
 
 from typing import Annotated, Any, Literal, Self
 
@@ -6,18 +6,18 @@ from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, mo
 from pydantic_core import PydanticCustomError
 
 from hpn.application.application import Application
-from hpn.application.requirements import LISTED_FIGURES
+from hpn.application.motor import CURVE, STALL_TORQUE, Curve, Motor
 from hpn.words.fields import Model, Positive, at_most, refused
 
 PairRank = Literal["weight", "utilisation", "inertia_ratio", "resonance"]
 BestOf = Literal["motor"]
 
 MOST_MOTORS = 1000
-"""Motors that a request may have, and pairs that a reply may have."""
+"""Motors of a request, and pairs of a reply, at most."""
 
 
 class MotorEntry(Model):
-    """A motor of a list: its figures at the shaft, as its data sheet has them."""
+    """A motor of a list: its figures at the shaft, as in its data sheet."""
 
     designation: Annotated[str, Field(min_length=1, max_length=100, description="Name of the motor, unique in a list.")]
     maximum_speed_rpm: Positive | None = Field(None, description="Maximum motor speed.", examples=[6000.0])
@@ -27,12 +27,13 @@ class MotorEntry(Model):
     rated_torque_Nm: Positive | None = Field(
         None, description="Continuous torque up to the rated speed, the limit of the RMS.", examples=[2.4]
     )
-    stall_torque_Nm: Positive | None = Field(None, description="Continuous torque at standstill, M₀.", examples=[2.8])
+    stall_torque_Nm: Positive | None = STALL_TORQUE
     peak_torque_Nm: Positive | None = Field(None, description="Peak motor torque.", examples=[7.2])
     inertia_kgm2: Positive | None = Field(
         None, description="Moment of inertia of the motor’s rotor, its brake included.", examples=[0.00015]
     )
     weight_kg: Positive | None = Field(None, description="Weight of the motor.", examples=[2.1])
+    curve: Curve | None = CURVE
 
     @model_validator(mode="after")
     def _is_in_order(self) -> Self:
@@ -51,11 +52,11 @@ _IN_ORDER = (
     ("rated_torque_Nm", "peak_torque_Nm"),
     ("stall_torque_Nm", "peak_torque_Nm"),
 )
-"""Figures of a motor of which the first is no larger than the second."""
+"""Figures of a motor; the first of each pair is no larger than the second."""
 
 
 class Distinct(Model):
-    """Something with motors, of which no two have one designation."""
+    """Base of a request with motors, whose designations are all different."""
 
     motors: tuple[MotorEntry, ...] | None = None
 
@@ -72,7 +73,7 @@ class Distinct(Model):
 
 
 MOST_TOLD = 20
-"""Motors that stand there twice of which an error tells."""
+"""Repeated motors, at most, that an error lists."""
 
 MOTORS: Any = Field(min_length=1, max_length=MOST_MOTORS)
 
@@ -81,32 +82,38 @@ def _for_motors(value: object) -> Application:
     return value if isinstance(value, Application) else Application.model_validate(value, context={"motors": True})
 
 
+_OF_LIST = tuple(name for name in Motor.model_fields if name != "inertia_ratio")
+"""Fields of a motor that a list provides."""
+
+
 class Pairing(Distinct):
-    """An application on every gear that it allows, with each of many motors."""
+    """An application on every gear that it allows, with each motor of a list."""
 
     application: Annotated[Application, BeforeValidator(_for_motors)] = Field(
-        description="The application; of a motor of its own it has inertia_ratio alone."
+        description="The application; its own motor may have inertia_ratio only."
     )
     motors: Annotated[tuple[MotorEntry, ...], MOTORS, at_most(MOST_MOTORS)] | None = Field(
         None, description="The motors, in place of a list."
     )
     list: Annotated[str, Field(min_length=1, max_length=40)] | None = Field(
-        None, description="Id of a list in place of motors: server, the motors of motors.csv.", examples=["server"]
+        None, description="Id of a stored list, in place of motors; server is motors.csv.", examples=["server"]
     )
-    rank_by: PairRank = Field("weight", description="Order of the pairs: ascending, resonance descending.")
+    rank_by: PairRank = Field(
+        "weight", description="Figure by which the pairs are ordered: ascending, a resonance descending."
+    )
     drive_resonance_Hz: Positive | None = Field(
         None, description="Least resonance of load and motor against each other.", examples=[15.0]
     )
     top: Annotated[int, Field(ge=1, le=MOST_MOTORS, strict=True)] = Field(
         100, description="Largest number of pairs in the reply."
     )
-    best_of: BestOf | None = Field(None, description="motor: of each motor the best pair alone.")
+    best_of: BestOf | None = Field(None, description="motor: only the best pair of each motor.")
 
     @field_validator("application")
     @classmethod
     def _has_no_motor(cls, application: Application) -> Application:
         motor = application.requirements.motor
-        if motor is not None and any(getattr(motor, name) is not None for name in (*LISTED_FIGURES, "designation")):
+        if motor is not None and any(getattr(motor, name) is not None for name in _OF_LIST):
             problem = PydanticCustomError("own_motor", "takes the place of the list: leave all but inertia_ratio out")
             raise refused(application, (("requirements", "motor"), problem))
         return application

@@ -1,4 +1,4 @@
-"""One load phase of a duty cycle, as somebody types it or as a motion comes to it."""
+"""One load phase of a duty cycle, typed or from a motion."""
 
 from pydantic import Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError, PydanticKnownError
@@ -7,7 +7,7 @@ from hpn.words.fields import Duration, Load, Model, Speed, SpeedMagnitude, Torqu
 from hpn.words.titles import Name
 
 ROOM = 1e-9
-"""Relative room in which a peak counts as reached: peaks, means and RMS are rounded by whoever hands them over."""
+"""Relative tolerance of a peak's comparison: clients send rounded peaks, means and RMS."""
 
 
 class Phase(Model):

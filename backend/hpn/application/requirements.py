@@ -1,10 +1,11 @@
-"""Requirements on a gear: the load on its output bearing, the limits of the motor, and all others."""
+"""Requirements on a gear: the load on its output bearing, and all other requirements except those of the motor."""
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from hpn.application.motor import Motor
 from hpn.application.shaft_centre import ShaftCentre
 from hpn.words.designations import canonical_size
 from hpn.words.fields import (
@@ -25,16 +26,16 @@ BearingModel = Literal["linear", "iso281", "digitised"]
 LifeBasis = Literal["L50", "L10"]
 PositionErrorAt = Literal["cycle", "rest"]
 MOST_WISHES = 100
-"""Ratios or sizes that may be asked for."""
+"""Ratios or sizes, at most, in a request."""
 
 WISHES: Any = Field(min_length=1, max_length=MOST_WISHES)
-"""Bounds of the list itself: beside the field they would be taken for those of a text, since it may be null."""
+"""Bounds of the list itself: on the nullable field they would be taken for bounds of a text."""
 
 Size = Annotated[str, Field(max_length=20), BeforeValidator(canonical_size)]
 
 
 BEARING_LIFE_H = 20_000.0
-"""Life for which an output bearing is judged where none is asked of it, as L50."""
+"""Life in h, as L50, for an output bearing without a required one."""
 
 
 class Drive(Model):
@@ -47,7 +48,7 @@ class Drive(Model):
 
 
 class OutputLoad(Model):
-    """Load on the output shaft: where no position is given, at the centre of the shaft and along its axis."""
+    """Load on the output shaft; without a position, at the centre of the shaft and along its axis."""
 
     radial_N: Load | None = Field(None, description="Radial load of the whole cycle.", examples=[500.0])
     axial_N: Load | None = Field(None, description="Axial load of the whole cycle.", examples=[200.0])
@@ -56,10 +57,10 @@ class OutputLoad(Model):
     )
     life_h: Hours = Field(BEARING_LIFE_H, description="Required life of the output bearing.", examples=[20000.0])
     life_basis: LifeBasis = Field("L50", description="L50: 50 % of the bearings survive it. L10: 90 % do.")
-    model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
+    model: BearingModel = Field("linear", description="Model of the envelope between the two published limits.")
     radial_position_mm: Annotated[Number, Field(ge=-1e6, le=1e6)] | None = Field(
         None,
-        description="Where the radial load acts, x from the shaft’s shoulder, outwards positive; by default at the "
+        description="Position x of the radial load from the shaft’s shoulder, outwards positive; by default the "
         "shaft’s centre.",
         examples=[45.0],
     )
@@ -68,8 +69,8 @@ class OutputLoad(Model):
     )
     shaft_centre_mm: ShaftCentre | None = Field(
         None,
-        description="Distance x_c from the shoulder to the shaft’s centre, at least; for sizes without one in the "
-        "catalogue. One for all, or an object by size, in which others is for the rest.",
+        description="Smallest distance x_c from the shoulder to the shaft’s centre, for sizes without one in the "
+        "catalogue: one number for all sizes, or an object by size, with others for the rest.",
         examples=[21.0, {"20A": 21.0, "others": 18.0}],
         json_schema_extra=one_of,
     )
@@ -92,41 +93,6 @@ class OutputLoad(Model):
         description="Pinion or pulley on the gear’s shaft, for typed phases.",
         examples=[{"type": "belt", "diameter_mm": 60.0}],
     )
-
-
-LISTED_FIGURES = ("maximum_speed_rpm", "peak_torque_Nm", "rated_torque_Nm", "rated_speed_rpm", "inertia_kgm2")
-"""Figures of a motor that motors.csv lists."""
-
-
-class Motor(Model):
-    """Ratings and inertia of the motor, at its shaft."""
-
-    maximum_speed_rpm: Positive | None = Field(None, description="Maximum motor speed.", examples=[4000.0])
-    peak_torque_Nm: Positive | None = Field(None, description="Peak motor torque.", examples=[20.0])
-    rated_torque_Nm: Positive | None = Field(None, description="Continuous motor torque.", examples=[8.0])
-    rated_speed_rpm: Positive | None = Field(
-        None, description="Rated motor speed, the limit of the average speed.", examples=[3000.0]
-    )
-    inertia_kgm2: Positive | None = Field(
-        None,
-        description="Moment of inertia of the motor’s rotor; with a motion it counts in the torques.",
-        examples=[0.00015],
-    )
-    inertia_ratio: Positive | None = Field(
-        None, description="Largest permitted load inertia over i² times the motor’s.", examples=[5.0]
-    )
-    designation: Annotated[str, Field(min_length=1, max_length=100)] | None = Field(
-        None, description="A motor of your motors.csv, in place of its figures.", examples=["M 40"]
-    )
-
-    @field_validator("designation")
-    @classmethod
-    def _stands_alone(cls, designation: str | None, info: ValidationInfo) -> str | None:
-        if designation is not None and any(info.data.get(name) is not None for name in LISTED_FIGURES):
-            raise PydanticCustomError(
-                "motor_twice", "selects a motor of motors.csv: give either the motor or its figures, not both"
-            )
-        return designation
 
 
 class Requirements(Model):

@@ -22,7 +22,7 @@ _BySize = TypeAdapter[dict[str, float]](dict[Annotated[str, BeforeValidator(cano
 
 
 def _of_either(value: Any, _: Any) -> float | dict[str, float] | None:
-    """A number or an object by its kind, so that an error stands at its place in what was sent."""
+    """A number or an object, validated by its type, so that an error has its place in the request."""
     if isinstance(value, dict):
         return _by_size(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -31,7 +31,9 @@ def _of_either(value: Any, _: Any) -> float | dict[str, float] | None:
 
 
 def _by_size(value: dict[str, Any]) -> float | dict[str, float] | None:
-    """Distances by size, nulls left out, in one order: one for all sizes is a number, and none is None."""
+    """Distances by size without nulls, in a fixed order: one distance for all sizes becomes a number, none becomes
+    None.
+    """
     if len(value) > MOST_SIZES:
         counts = {"field_type": "Tuple", "max_length": MOST_SIZES, "actual_length": len(value)}
         raise PydanticKnownError("too_long", counts)
@@ -56,14 +58,14 @@ def _place(size: str) -> tuple[bool, int, str]:
 ShaftCentre = Annotated[
     Positive | Annotated[dict[str, Positive], Field(max_length=MOST_SIZES)], WrapValidator(_of_either)
 ]
-"""A number is that of all sizes. An object without a size but `others` becomes one, and an empty one none."""
+"""A number holds for all sizes. An object with only `others` becomes a number, and an empty one becomes None."""
 
 
 def of_others(centre: float | Mapping[str, float] | None) -> float | None:
-    """Distance for the sizes that have none of their own; None where none is given."""
+    """Distance for sizes without their own; None if not given."""
     return centre.get(OTHERS) if isinstance(centre, Mapping) else centre
 
 
 def by_size(centre: float | Mapping[str, float] | None) -> dict[str, float]:
-    """Distances of the sizes that have one of their own."""
+    """Distances of sizes with their own."""
     return {size: x_c for size, x_c in centre.items() if size != OTHERS} if isinstance(centre, Mapping) else {}

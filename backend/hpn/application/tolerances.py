@@ -1,7 +1,7 @@
-"""Tolerances: how far inputs may lie from their values, and the intervals of an application that follow from them.
+"""Tolerances: permitted deviations of inputs from their values, and the resulting intervals of an application.
 
-A tolerance is named by the path of its input, as the columns of a fleet are; a field of a phase by itself stands for
-that field of every phase.
+A tolerance is named by the path of its input, like the columns of a fleet; a phase's field by itself stands for this
+field of every phase.
 """
 
 import math
@@ -15,7 +15,7 @@ from pydantic import BaseModel, BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from hpn.application.phase import ROOM, Phase
-from hpn.words.fields import Model, Number, refused
+from hpn.words.fields import LEAST, Model, Number, refused
 from hpn.words.wording import N_
 
 MOST_TOLERANCES = 50
@@ -28,10 +28,10 @@ ONE_KIND = N_("give one of percent, absolute, or minus and plus")
 
 
 class Deviation(Model):
-    """How far an input may lie to one side of its value."""
+    """Deviation of an input to one side of its value."""
 
     percent: Percent | None = Field(None, description="Percent of the value’s magnitude.", examples=[10.0])
-    absolute: Amount | None = Field(None, description="The same in the input’s own unit.")
+    absolute: Amount | None = Field(None, description="Deviation in the input’s own unit.")
 
     @model_validator(mode="after")
     def _is_one(self) -> Self:
@@ -41,21 +41,25 @@ class Deviation(Model):
 
     def of(self, value: float) -> float:
         """Deviation from a value in its own unit."""
-        return self.absolute if self.absolute is not None else abs(value) * (self.percent or 0.0) / 100
+        return _deviation(self.percent, self.absolute, value)
+
+
+def _deviation(percent: float | None, absolute: float | None, value: float) -> float:
+    return absolute if absolute is not None else abs(value) * (percent or 0.0) / 100
 
 
 class Tolerance(Model):
-    """How far an input may lie from its value: alike to both sides, or minus and plus apart."""
+    """Deviation of an input from its value: the same to both sides, or minus and plus separately."""
 
     percent: Percent | None = Field(None, description="Percent of the value’s magnitude.", examples=[10.0])
-    absolute: Amount | None = Field(None, description="The same in the input’s own unit.")
+    absolute: Amount | None = Field(None, description="Deviation in the input’s own unit.")
     minus: Deviation | None = Field(None, description="Deviation below the value; without it none.")
     plus: Deviation | None = Field(None, description="Deviation above the value; without it none.")
 
     @model_validator(mode="before")
     @classmethod
     def _has_both_sides(cls, value: Any) -> Any:
-        """A tolerance to one side has none to the other."""
+        """A tolerance to one side has no deviation to the other."""
         if not isinstance(value, dict) or (value.get("minus") is None) == (value.get("plus") is None):
             return value
         missing = "minus" if value.get("minus") is None else "plus"
@@ -78,7 +82,10 @@ class Tolerance(Model):
 
     def around(self, value: float) -> tuple[float, float]:
         """Smallest and largest value."""
-        minus, plus = self.sides
+        minus, plus = self.minus, self.plus
+        if not (minus or plus):
+            alike = _deviation(self.percent, self.absolute, value)
+            return value - alike, value + alike
         return value - (minus.of(value) if minus else 0.0), value + (plus.of(value) if plus else 0.0)
 
 
@@ -113,10 +120,16 @@ CROSSING = (
 """Inputs that may cross 0. Others keep their sign, or their bound at 0."""
 
 KEPT = ("speed_rpm", "pause_s", "inertia_kgm2", "load_inertia_kgm2", "mass_kg", "angle_deg", "distance_mm")
-"""Inputs whose bound may be 0 or below, but that don't reach it by a tolerance."""
+"""Inputs with a bound of 0 or below that a tolerance must not reach."""
 
-WITHOUT = ("requirements.utilisation", "requirements.worst_case_utilisation", "emergency_stop.count")
-"""Numbers that take no tolerance: they say how an answer is judged, or count."""
+WITHOUT = (
+    "requirements.utilisation",
+    "requirements.worst_case_utilisation",
+    "requirements.motor.stall_torque_Nm",
+    "requirements.motor.weight_kg",
+    "emergency_stop.count",
+)
+"""Numbers without a tolerance: criteria, counts, and figures that are not judged by themselves."""
 
 PHASE_PATHS = tuple(name for name in Phase.model_fields if name != "name")
 LOADS = ("radial_N", "axial_N")
@@ -129,8 +142,8 @@ Place = tuple[str | int, ...]
 class Interval:
     """One number of an application with its tolerance: `path` names the entry, `place` the number.
 
-    It lies between `low` and `high`; `least` and `most` are the bounds of its field, of which `is_open` says whether
-    the one next to 0 can't be reached.
+    It lies between `low` and `high`; `least` and `most` are the bounds of its field. With `is_open` the bound next to 0
+    can't be reached.
     """
 
     path: str
@@ -143,7 +156,7 @@ class Interval:
     is_open: bool
 
     def grown(self, factor: float) -> "Interval":
-        """The interval with its tolerance by a factor."""
+        """The interval with its tolerance times a factor, within the bounds of its field."""
         low, high = (self.value + factor * (end - self.value) for end in (self.low, self.high))
         return replace(self, low=max(low, self.least), high=min(high, self.most))
 
@@ -157,9 +170,9 @@ class Interval:
 
     @property
     def fault(self) -> PydanticCustomError | PydanticKnownError | None:
-        """Error of an interval that leaves the bounds of its field."""
+        """Error of an interval that leaves the bounds of its field; None for any other."""
         if self.low < self.least or (self.is_open and self.low == self.least):
-            if self.least == 0:
+            if self.least in (0, LEAST):
                 return PydanticCustomError("tolerance_sign", KEEPS_SIGN)
             return PydanticCustomError("tolerance_least", BELOW, {"bound": f"{self.least:g}"})
         if self.high > self.most or (self.is_open and self.high == self.most == 0):
@@ -174,7 +187,7 @@ BELOW = N_("must leave the input at or above its bound {bound}")
 ABOVE = N_("must leave the input at or below its bound {bound}")
 HELD = N_("must leave {upper} at or above {lower} everywhere: the tolerances of both overlap")
 WITH_VALUES = {"tolerance_least": BELOW, "tolerance_most": ABOVE, "tolerance_held": HELD}
-"""Texts of errors that have values in them, by their codes."""
+"""Texts of errors with values, by their codes."""
 
 NOT_GIVEN = N_("the input is 0 or not given, so it takes no tolerance")
 NO_INPUT = N_("is not a path of an input that takes a tolerance, such as torque_Nm, phases.1.torque_Nm or pause_s")
@@ -182,9 +195,9 @@ OF_MOTION = N_("a motion has no phases that are typed: name motion.mechanism or 
 
 
 def intervals_of(application: Any, tolerances: Mapping[str, Tolerance]) -> tuple[Interval, ...]:
-    """Intervals of an application by its tolerances; raises ValidationError with a place for each that has no sense.
+    """Intervals of an application by its tolerances; raises ValidationError with the place of each invalid tolerance.
 
-    A path of one phase goes before the one for all.
+    The path of one phase has precedence over that of all phases.
     """
     intervals: dict[Place, Interval] = {}
     problems: list[tuple[Place, Any]] = []
@@ -215,7 +228,7 @@ class _NoTargetError(ValueError):
 
 
 def _targets(application: Any, path: str) -> Iterator[tuple[BaseModel, str, Place]]:
-    """Numbers that a path names: the part that each belongs to, its name, and its place."""
+    """Yield the numbers of a path: the part of each, its name, and its place."""
     cycle = application.duty_cycle
     if path in PHASE_PATHS:
         yield from _of_all(cycle, path)
@@ -248,7 +261,7 @@ def _of_all(cycle: Any, name: str) -> Iterator[tuple[BaseModel, str, Place]]:
 
 
 def _single(application: Any, path: str) -> tuple[Any, str, Place]:
-    """Part, name and place of the one number that a path without a number in it names."""
+    """Part, name and place of the single number of a path without an index."""
     if path in WITHOUT or path.startswith("duty_cycle"):
         raise _NoTargetError("tolerance_path", NO_INPUT)
     *parts, name = path.split(".")
@@ -276,7 +289,7 @@ def _interval(path: str, part: BaseModel, name: str, place: Place, tolerance: To
 
 @cache
 def _bounds(model: type[BaseModel], name: str) -> tuple[float, float] | None:
-    """Bounds of a number of a model; None for what is no number."""
+    """Bounds of a number of a model; None for any other field."""
     entry = model.model_json_schema()["properties"][name]
     options = [option for option in entry.get("anyOf", entry.get("oneOf", (entry,))) if option.get("type") == "number"]
     if not options:
@@ -285,14 +298,14 @@ def _bounds(model: type[BaseModel], name: str) -> tuple[float, float] | None:
     return least, options[0].get("maximum", math.inf)
 
 
-# --- Inputs that hold each other ------------------------------------------------------------------------------------
+# --- Inputs that limit each other ------------------------------------------------------------------------------------
 
 OWN = ("peak_torque_Nm", "rms_torque_Nm", "least_torque_Nm", "peak_speed_rpm")
 STOP = ("emergency_stop", "brake")
 
 
 def _contradictions(application: Any, intervals: Mapping[Place, Interval]) -> Iterator[tuple[Place, Any]]:
-    """Errors of intervals in which inputs that hold each other would contradict themselves."""
+    """Errors of intervals in which inputs that limit each other would contradict."""
     for place, interval in intervals.items():
         if place[0] == "phases" and place[2] in OWN:
             number = int(place[1])
@@ -310,7 +323,7 @@ def _contradictions(application: Any, intervals: Mapping[Place, Interval]) -> It
 def _of_phase(
     phase: Phase, number: int, own: Interval, intervals: Mapping[Place, Interval]
 ) -> Iterator[tuple[Place, Any]]:
-    """Errors of a phase one of whose peaks, RMS or least torque has a tolerance of its own."""
+    """Errors of a phase with a tolerance of its own on a peak, the RMS or the least torque."""
 
     def ends(name: str) -> tuple[float, float]:
         interval = intervals.get(("phases", number, name))
@@ -334,7 +347,7 @@ def _of_phase(
 
 
 def moved_by(interval: Interval, value: float, *, is_least: bool) -> tuple[float, float]:
-    """Ends of a peak, an RMS or a least torque that moves with its phase's torque or speed."""
+    """Ends of a peak, an RMS or a least torque that follows its phase's torque or speed."""
     if interval.low <= 0 <= interval.high:
         more = max(interval.value - interval.low, interval.high - interval.value)
         return (0.0, 0.0) if is_least else (value, value + more)

@@ -1,4 +1,4 @@
-"""Names that stand more than once in one object of JSON: readers of JSON take the last one without a word."""
+"""Names that occur more than once in one JSON object: parsers silently take the last one."""
 
 import json
 from collections import Counter
@@ -8,11 +8,11 @@ from hpn.application import InputError
 from hpn.words.wording import N_, Sentence
 
 MOST_SHOWN = 40
-"""Characters of a name that a message has room for."""
+"""Characters of a name, at most, in a message."""
 
 
 class RepeatedNameError(InputError):
-    """JSON of which a value would be lost; `name` stands more than once in one object."""
+    """JSON that would lose a value; `name` occurs more than once in one object."""
 
     def __init__(self, name: str, count: int) -> None:
         self.name = name[:MOST_SHOWN]
@@ -21,7 +21,7 @@ class RepeatedNameError(InputError):
 
 
 def require_unique(content: bytes) -> None:
-    """Raise RepeatedNameError for JSON with a name more than once in one object, ValueError for what is no JSON."""
+    """Raise RepeatedNameError for JSON with a name more than once in one object, ValueError for anything but JSON."""
     json.loads(content, strict=False, parse_int=str, parse_float=str, object_pairs_hook=_distinct)
 
 

@@ -1,6 +1,6 @@
 """The catalogue: CSV tables and a supplement over them, as gears with a source for every figure.
 
-`hpn.catalogue` is this room and a function of the package, too: called, it gives the gears as Python shows them.
+`hpn.catalogue` is both this package and a function of `hpn`: a call returns the gears for Python.
 """
 
 import sys
@@ -34,7 +34,7 @@ __all__ = [
 
 
 class _CallableRoom(ModuleType):
-    """The room, which `hpn.catalogue()` calls."""
+    """This package as a callable, for `hpn.catalogue()`."""
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         import hpn

@@ -1,4 +1,4 @@
-"""The catalogue as it is asked: every gear of the series, what holds for all of them, and columns of figures."""
+"""The catalogue: every gear of the series, data of the whole series, and columns of figures."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
@@ -59,7 +59,7 @@ class Fact:
 
 @dataclass(frozen=True, slots=True)
 class ListedMotor:
-    """A motor of the user; None is a figure that is not known."""
+    """A motor of the user; an unknown figure is null."""
 
     __pydantic_config__ = described(MOTOR)
 
@@ -73,9 +73,9 @@ class ListedMotor:
 
 
 class GearList:
-    """Some gears of the catalogue in its order, once as rows and once as columns.
+    """Some gears of the catalogue in its order, as rows and as columns.
 
-    Properties of a size, such as its output bearing, are worked out once per size: `of_size` (gears,) is the place of
+    Properties of a size, such as its output bearing, are computed once per size: `of_size` (gears,) is the place of
     each gear's size, `first_of_size` (sizes,) the first gear of each.
     """
 
@@ -90,12 +90,14 @@ class GearList:
 
 
 AVERAGING_S = 300.0
-"""Longest time on end above the permissible average speed that is taken to average out: ours, not the handbook's."""
+"""Longest uninterrupted time in s above the permissible average speed that averages out: our value, not the
+handbook's.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Catalogue:
-    """Every gear of the series, and what holds for it as a whole. Equal to itself alone, so it can be a key.
+    """Every gear of the series, and the data of the whole series. Equal only to itself, so that it can be a key.
 
     `averaging_s` is the service's own assumption, for a notice; no check depends on it.
     """
@@ -113,7 +115,7 @@ class Catalogue:
     motors: tuple[ListedMotor, ...] = ()
 
     def __getstate__(self) -> dict[str, object]:
-        """Its fields, without what is computed of them on demand, which other threads may be adding meanwhile."""
+        """Its fields without cached properties, which other threads may be adding meanwhile."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
@@ -148,14 +150,14 @@ class Catalogue:
 
     @cached_property
     def bearing_reference(self) -> tuple[float, float]:
-        """Speed in rpm and life L50 in hours that the published bearing loads belong to (note 1 of table 10.1)."""
+        """Speed in rpm and life L50 in hours of the published bearing loads (note 1 of table 10.1)."""
         return (
             float(self.series["bearing_reference_speed"].value),
             float(self.series["bearing_reference_life_L50"].value),
         )
 
     def restricted(self, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
-        """Gears of the given sizes and ratios (None: of all), in catalogue order; maybe none."""
+        """Gears of the given sizes and ratios (None: of all), in catalogue order; may be empty."""
         return self.listed(
             gear
             for gear in self.gears
@@ -168,7 +170,7 @@ class Catalogue:
         return GearList(chosen, [self.curves.get(gear.size) for gear in chosen])
 
     def facts_on(self, check: str) -> tuple[Fact, ...]:
-        """Statements that bear on the check of a code."""
+        """Statements about the check of a code."""
         return tuple(fact for fact in self.facts if fact.check == check)
 
     @cached_property
@@ -185,5 +187,5 @@ class Catalogue:
         return self.by_designation.get(canonical_designation(designation) or "")
 
     def find_size(self, text: str) -> Gear | None:
-        """First gear of a size in any spelling, or None; what belongs to the size is the same in all of them."""
+        """First gear of a size in any spelling, or None; properties of a size are the same in all its gears."""
         return next((gear for gear in self.gears if gear.size == canonical_size(text)), None)

@@ -1,6 +1,6 @@
-"""A catalogue as bytes that outlast its files: every figure with its source, as the engine read it then.
+"""A catalogue as bytes that outlast its files: every figure with its source, as the engine read it at that time.
 
-The files themselves would not do: a later version may want other columns of them, or read them more strictly.
+The files themselves are not enough: a later version may need other columns, or read them more strictly.
 """
 
 import dataclasses
@@ -12,11 +12,11 @@ import numpy as np
 from hpn.catalogue import Catalogue
 
 FORMAT = 1
-"""Of the copies; raise it when a field of the catalogue is renamed, dropped or means something else."""
+"""Format of the copies; raise it when a field of the catalogue is renamed, dropped or changes its meaning."""
 
 
 class UnreadableCopyError(ValueError):
-    """A copy that this version can't read; the text says why."""
+    """A copy that this version can't read; the text names the reason."""
 
 
 class _Head(msgspec.Struct):
@@ -25,13 +25,13 @@ class _Head(msgspec.Struct):
 
 
 def copy_of(catalogue: Catalogue) -> bytes:
-    """Everything in a catalogue as JSON; the same bytes for the same catalogue."""
+    """A whole catalogue as JSON; the same bytes for the same catalogue."""
     fields = {field.name: getattr(catalogue, field.name) for field in dataclasses.fields(catalogue)}
     return msgspec.json.encode({"format": FORMAT, "catalogue": fields}, enc_hook=_encodable)
 
 
 def read_copy(content: bytes) -> Catalogue:
-    """The catalogue that was copied, exactly. Figures that an earlier version did not know are not published in it.
+    """The copied catalogue, exactly. Figures unknown to an earlier version count as not published.
 
     Raises UnreadableCopyError for the copy of a version whose catalogue has other fields.
     """

@@ -1,4 +1,6 @@
-"""The files of a catalogue folder: each is read once, within a bound, cell by cell; what is no table is an error."""
+"""The files of a catalogue folder: each is read once, within a limit, cell by cell; anything but a table is an
+error.
+"""
 
 import codecs
 import csv
@@ -22,12 +24,12 @@ from hpn.words.wording import Sentence
 MAXIMUM_FILE_BYTES = 4_000_000
 
 SHEETS = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".ods")
-"""Endings of files that people keep tables in."""
+"""Suffixes of files that may hold a table."""
 
 LONGEST_CELL = 1000
 
 UNPRINTABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufffe\uffff]")
-"""Control characters, separators of lines that editors don't count, marks that turn the text around them."""
+"""Control characters, separators of lines that editors don't count, marks that change the direction of text."""
 
 KINDS = {
     stat.S_IFDIR: "a folder",
@@ -39,10 +41,10 @@ KINDS = {
 
 
 def read_folder(folder: Path, tables: Collection[str]) -> dict[str, bytes]:
-    """Content of those of the tables that a folder has, by their names.
+    """Contents of a folder's tables by their names.
 
-    Raises CatalogueError for a folder or a table that can't be read, and for a file that seems to be a table, but has
-    the name of none: whoever put it there believes that it counts.
+    Raises CatalogueError for a folder or a table that can't be read, and for a file that looks like a table but has
+    none of their names: otherwise its owner would believe that it counts.
     """
     try:
         names = sorted(os.listdir(folder))
@@ -91,8 +93,8 @@ Key = tuple[str, ...]
 def read(path: Path, content: bytes, table: type[CatalogueRow], *, supplied: bool) -> dict[Key, Cells]:
     """Cells of one CSV file by key.
 
-    Raises CatalogueError for what is no text, a wrong header, no row or too many, a row of the wrong length, a blank or
-    repeated key.
+    Raises CatalogueError for a file that is not text, a wrong header, no row or too many, a row of the wrong length, a
+    blank or repeated key.
     """
     rows: dict[Key, Cells] = {}
     may_lack = frozenset(table.columns()) - {*table.key} if supplied else table.optional
@@ -115,7 +117,7 @@ def read(path: Path, content: bytes, table: type[CatalogueRow], *, supplied: boo
 
 
 def merge(rows: dict[Key, Cells], supplement: dict[Key, Cells]) -> dict[Key, Cells]:
-    """Fill or correct cells of `rows` by those of a supplement; a blank cell keeps what was there."""
+    """Rows with cells filled or corrected by a supplement; its blank cells change nothing."""
     merged = dict(rows)
     for key, cells in supplement.items():
         before = merged.get(key, {})
@@ -125,7 +127,7 @@ def merge(rows: dict[Key, Cells], supplement: dict[Key, Cells]) -> dict[Key, Cel
 
 
 def validated(table: type[TableRow], rows: dict[Key, Cells]) -> list[TableRow]:
-    """Typed rows; raises CatalogueError that names file, line and column of the first wrong cell."""
+    """Typed rows; raises CatalogueError, which names file, line and column of the first wrong cell."""
     result = []
     for cells in rows.values():
         values: dict[str, Any] = {column: cell.text or None for column, cell in cells.items()}
@@ -156,11 +158,11 @@ def _text(path: Path, content: bytes) -> str:
 
 
 def _place(before: str) -> tuple[int, str | None]:
-    """Line and column of what follows a text."""
+    """Line and column of the place behind a text."""
     lines = (before + "?").splitlines()
     try:
         header, broken = next(csv.reader(lines)), next(csv.reader(lines[-1:]))
-    except csv.Error:  # the text is no table either
+    except csv.Error:  # the text is not a table either
         return len(lines), None
     return len(lines), header[len(broken) - 1] if len(broken) <= len(header) and len(lines) > 1 else None
 
@@ -168,9 +170,9 @@ def _place(before: str) -> tuple[int, str | None]:
 def _lines(
     path: Path, text: str, table: type[CatalogueRow], may_lack: frozenset[str]
 ) -> Iterator[tuple[int, dict[str, str]]]:
-    """Line and cells of every row by column; a column that the file may lack is blank.
+    """Yield line and cells of every row by column; a column that the file may lack is blank.
 
-    Raises CatalogueError for a header that is not the table's and for a row that does not fit it.
+    Raises CatalogueError for a header other than the table's and for a row that does not fit it.
     """
     reader = csv.reader(text.splitlines(), strict=True)
     columns = table.columns()
@@ -188,7 +190,7 @@ def _lines(
             if not row:
                 continue
             if len(row) != len(columns):
-                place = header[min(len(row), len(header) - 1)]  # the first column without a cell, else the last of all
+                place = header[min(len(row), len(header) - 1)]  # the first column without a cell, else the last column
                 detail = f"has {len(row)} cells where the header has {len(columns)} (a decimal comma splits a cell)"
                 raise CatalogueError(path, reader.line_num, place, f"the row {detail}")
             if max(map(len, row)) > LONGEST_CELL:
@@ -206,7 +208,7 @@ def _lines(
 
 
 def _header(path: Path, written: list[str], columns: list[str]) -> tuple[list[str], list[str]]:
-    """Columns by what a header calls them, and codes of their units: `inertia_kgcm2` is `inertia_kgm2` in kg·cm²."""
+    """Columns by their names in a header, and codes of their units: `inertia_kgcm2` is `inertia_kgm2` in kg·cm²."""
     names, codes = list(written), [""] * len(written)
     for place, name in enumerate(written):
         for column in columns if name not in columns else ():
@@ -221,12 +223,12 @@ def _header(path: Path, written: list[str], columns: list[str]) -> tuple[list[st
 
 
 def _takes_units(unit: str) -> bool:
-    """True for a unit of the wire in place of which others may be given."""
+    """True for a unit of the wire that may be replaced by others."""
     return bool(quantity_of(quotient_of(unit).dividend))
 
 
 def _in_wire(text: str, column: str, code: str) -> str | Sentence:
-    """A cell in the unit of its column; the unit that it says itself counts before that of the header."""
+    """A cell in the unit of its column; a unit in the cell has precedence over that of the header."""
     unit = suffix_of(column)
     if not _takes_units(unit):
         return text

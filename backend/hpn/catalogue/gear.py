@@ -1,4 +1,4 @@
-"""A gear of the series with every figure that is published of it and where each comes from; and columns of gears."""
+"""A gear of the series with every published figure and its source; and columns of gears."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
@@ -14,7 +14,7 @@ from hpn.words.source import is_supplied
 
 @dataclass(frozen=True, slots=True)
 class ClampBolt:
-    """Bolt of the motor coupling (table 26.2); which one depends on the coupling."""
+    """Bolt of the motor coupling (table 26.2); its size depends on the coupling."""
 
     __pydantic_config__ = described(BOLT)
 
@@ -37,18 +37,18 @@ class HousingBolts:
 
 
 def _published(file: str, *, signed: bool = False) -> Any:
-    """Field of a figure, and the file of the catalogue with a column of its name; positive unless it is signed."""
+    """Field of a figure with the catalogue's file that has a column of its name; positive unless signed."""
     return field(default=None, metadata={"file": file, "signed": signed})
 
 
 def _supplied(file: str) -> Any:
-    """Field of a figure that the handbook does not publish: a column that the file may lack, for the user's own."""
+    """Field of a figure that the handbook does not publish: an optional column for the user's own figures."""
     return field(default=None, metadata={"file": file, "signed": False, "optional": True})
 
 
 @dataclass(frozen=True, slots=True)
 class Gear:
-    """A size and ratio. None is a figure that is not published; it is never read as zero."""
+    """A size and ratio. A figure that is not published is null, never zero."""
 
     __pydantic_config__ = described(GEAR) | {"json_schema_serialization_defaults_required": True}
 
@@ -81,12 +81,12 @@ class Gear:
 
     @classmethod
     def unpublished(cls) -> frozenset[str]:
-        """Figures that the handbook gives of no gear: a supplement may."""
+        """Figures that the handbook gives for no gear, but a supplement may."""
         return frozenset(each.name for each in fields(cls) if each.metadata.get("optional"))
 
     @property
     def name(self) -> str:
-        """Size as the handbook heads its tables: `HPN-20A`."""
+        """Size as in the headings of the handbook's tables: `HPN-20A`."""
         return f"HPN-{self.size}"
 
     def is_supplied(self, figure: str) -> bool:
@@ -95,7 +95,7 @@ class Gear:
 
 
 class GearColumns:
-    """Figures of some gears as arrays, shape (gears,); NaN where a figure is not published."""
+    """Figures of some gears as arrays, shape (gears,); NaN if not published."""
 
     ratio: FloatArray
     repeated_peak_torque_Nm: FloatArray

@@ -1,4 +1,4 @@
-"""The catalogue: CSV tables, and a supplement over them, into gears with a source for every figure."""
+"""From CSV tables, and a supplement over them, to gears with a source for every figure."""
 
 import hashlib
 from collections import defaultdict
@@ -51,7 +51,7 @@ SERIES_FIGURES = {
 """Figures of series.csv that the equations need, and their units."""
 
 PER_STAGE = (WeightTable, LengthTable, AccuracyTable, StiffnessTable)
-"""Tables whose figures follow size and number of stages."""
+"""Tables whose figures depend on size and number of stages."""
 
 ORDERINGS = (
     (RatingTable, "rated_torque_Nm", "momentary_peak_torque_Nm", False),
@@ -63,7 +63,7 @@ ORDERINGS = (
     (MotorTable, "rated_speed_rpm", "maximum_speed_rpm", True),
     (MotorTable, "rated_torque_Nm", "peak_torque_Nm", True),
 )
-"""Table, smaller figure, larger figure, and whether they may be equal."""
+"""Table, smaller figure, larger figure, and True if they may be equal."""
 
 
 def load_catalogue(
@@ -71,7 +71,7 @@ def load_catalogue(
 ) -> Catalogue:
     """Read, merge and validate the catalogue.
 
-    Raises CatalogueError, which names file, line and column, for the first thing that is wrong.
+    Raises CatalogueError, which names file, line and column, for the first fault.
     """
     parts = [(part, files.read_folder(part, FILES)) for part in (folder, supplement) if part]
     for part, contents in parts:
@@ -105,7 +105,7 @@ def load_catalogue(
 
 
 def _rows(table: type[CatalogueRow], parts: Sequence[tuple[Path, dict[str, bytes]]]) -> dict[files.Key, Cells]:
-    """Rows of the catalogue's folder, and those of the supplement over them where it has this table."""
+    """Rows of the catalogue's folder, merged with the supplement's rows of the same table."""
     (folder, contents), *supplements = parts
     if table.file not in contents:
         raise CatalogueError(folder / table.file, None, None, "is missing")
@@ -146,12 +146,12 @@ class _Book(dict[type[CatalogueRow], list[CatalogueRow]]):
         return cast(TableRow | None, self._by_key.get((table, *key)))
 
     def source(self, row: CatalogueRow, column: str) -> str:
-        """Where one figure comes from; what the user supplied says so."""
+        """Source of one figure, with a mark for the user's own."""
         cell = row.cells[column]
         if cell.supplied:
             return supplied_source(cell.source or Path(cell.file).name)
         printed = self.find(SourceTable, cell.source)
-        assert printed is not None  # `_check` has looked
+        assert printed is not None  # ensured by `_check`
         return printed_source(cell.source, printed.page)
 
 
@@ -184,7 +184,9 @@ def _check(book: _Book) -> None:
 
 
 def _check_stages(book: _Book) -> None:
-    """A ratio has the same number of stages in every size, and fewer stages never make a larger ratio."""
+    """Raise CatalogueError unless a ratio has the same stages in every size, and a larger ratio never has fewer
+    stages.
+    """
     kinds = {(gear.ratio, gear.stages): gear for gear in reversed(book.of(GearTable))}
     for gear in kinds.values():
         for other in kinds.values():
@@ -210,7 +212,7 @@ def _check_orderings(book: _Book) -> None:
 
 
 def _check_complete(book: _Book) -> None:
-    """A size that the handbook rates is rated whole; a supplement may rate gear by gear."""
+    """Raise CatalogueError unless a size that the handbook rates is complete; a supplement may rate single gears."""
     rated = {row.size: row for row in reversed(book.of(RatingTable)) if not row.cells["size"].supplied}
     for gear in book.of(GearTable):
         if gear.size not in rated:
@@ -293,7 +295,7 @@ def _housing_bolts(book: _Book, size: str) -> HousingBolts | None:
 
 
 def _curves(book: _Book) -> dict[str, Curve]:
-    """Curves by size, from the f_w = 1 points; curves of other load coefficients are validated alike."""
+    """Curves by size from the points with f_w = 1; curves of other load coefficients are only validated."""
     points: dict[tuple[str, float], list[EnvelopeTable]] = defaultdict(list)
     for row in book.of(EnvelopeTable):
         points[row.size, row.load_coefficient].append(row)

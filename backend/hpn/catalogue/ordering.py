@@ -9,7 +9,7 @@ from hpn.catalogue.gear import Gear
 from hpn.words.wording import N_, Sentence
 
 MOTOR_CODE = r"[A-Za-z0-9]{1,8}([.\-][A-Za-z0-9]{1,8}){0,3}"
-"""Codes for the motor adapter look like `BH-AF1` or `xx.xx`; which one fits a motor only the maker says."""
+"""Pattern of codes for the motor adapter, such as `BH-AF1` or `xx.xx`; only the maker knows the code for a motor."""
 
 NOT_A_MOTOR_CODE = N_("letters and digits, in groups separated by - or . such as BH-AF1")
 NOT_A_CODE = N_("must be a gear of the catalogue, an output version and the motor adapter, such as HPN-20A-5-J6-BH-AF1")
@@ -17,7 +17,7 @@ NOT_A_CODE = N_("must be a gear of the catalogue, an output version and the moto
 
 @dataclass(frozen=True, slots=True)
 class OrderingCode:
-    """A code as far as it is known, what it was made of, and what is wrong with the part that was typed."""
+    """A code as far as known, its parts, and the fault of the typed part."""
 
     text: str
     gear: Gear
@@ -28,12 +28,12 @@ class OrderingCode:
 
     @property
     def labels(self) -> Mapping[str, str]:
-        """Labels that an address gives of it; the default version is left out."""
+        """Labels of the code in a link; the default version is left out."""
         return {"order_output": "" if self.output == self.versions[0].code else self.output, "order_motor": self.motor}
 
 
 def ordering_code(catalogue: Catalogue, gear: Gear, output: str = "", motor: str = "") -> OrderingCode:
-    """Code of a gear with an output version, the first one where none or an unknown one is asked for."""
+    """Code of a gear with an output version, the first version for a missing or unknown one."""
     versions = tuple(version for version in catalogue.output_versions if version.position == "output")
     output = output if any(version.code == output for version in versions) else versions[0].code
     motor = motor.strip()[:60]
@@ -44,7 +44,9 @@ def ordering_code(catalogue: Catalogue, gear: Gear, output: str = "", motor: str
 
 
 def read_ordering_code(catalogue: Catalogue, text: str) -> OrderingCode | Sentence:
-    """Code of a text such as `hpn-20a-5-j6-bh-af1`; output and motor may be left out, from the end."""
+    """Code from a text such as `hpn-20a-5-j6-bh-af1`, or an error message; motor and output may be left out from the
+    end.
+    """
     head, gear_size, ratio, output, motor = (*text.strip().upper().split("-", 4), "", "", "", "", "")[:5]
     gear = catalogue.find(f"{head}-{gear_size}-{ratio}")
     if gear is None:

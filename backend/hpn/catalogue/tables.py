@@ -1,7 +1,7 @@
-"""The CSV tables of the catalogue: which columns each has, and what a cell may hold.
+"""The CSV tables of the catalogue: the columns of each, and the permitted content of a cell.
 
 A table is a pydantic model: its fields are the columns, in their units, and `key` names the columns that identify a
-row. A supplement has files of the same form that are merged cell by cell; a blank cell keeps what was there.
+row. A supplement has files of the same form that are merged cell by cell; a blank cell changes nothing.
 """
 
 import re
@@ -28,7 +28,7 @@ class CatalogueError(MendableError, ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """Text of one cell, the source its row names, and where it was read."""
+    """Text of one cell, the source named in its row, and its place."""
 
     text: str
     source: str
@@ -66,7 +66,7 @@ class CatalogueRow(BaseModel):
     most_rows: ClassVar[int] = 1000
     may_be_empty: ClassVar[bool] = False
     optional: ClassVar[frozenset[str]] = frozenset()
-    """Columns that a file may lack, as if they were blank; one of a supplement may lack all but the key."""
+    """Columns that a file may lack, as if they were blank; a supplement's file may lack all but the key."""
     source: str | None = Field(None, min_length=1)
     cells: Cells = Field(default_factory=dict, exclude=True)
 
@@ -76,7 +76,7 @@ class CatalogueRow(BaseModel):
         return [name for name in cls.model_fields if name != "cells"]
 
     def error(self, column: str, detail: str) -> CatalogueError:
-        """Error that points at one cell of this row, or at its first cell where the file leaves that one blank."""
+        """Error at one cell of this row, or at the row's first cell if the file lacks that column."""
         cell = self.cells.get(column) or next(iter(self.cells.values()))
         return CatalogueError(cell.file, cell.line, column, detail)
 
@@ -93,7 +93,7 @@ class SourceTable(CatalogueRow):
 
 
 class RatioRow(CatalogueRow):
-    """Row of a table of figures that each gear has of its own."""
+    """Row of a table of figures that differ from gear to gear."""
 
     key = ("size", "ratio")
     size: Size
@@ -123,7 +123,7 @@ class StageRow(CatalogueRow):
 
 
 def _with_figures(file: str, base: type[TableRow]) -> type[TableRow]:
-    """Table of the figures that the fields of `Gear` say they have from this file."""
+    """Table of the figures that the fields of `Gear` assign to this file."""
     figures: dict[str, Any] = {
         field.name: (Figure | None if field.metadata["signed"] else Positive | None, None)
         for field in fields(Gear)

@@ -1,4 +1,4 @@
-"""`hpn database`: brings a database up to date, and checks that the service can save in it."""
+"""`hpn database`: upgrades a database, and checks that the service can save in it."""
 
 import argparse
 import asyncio
@@ -8,7 +8,7 @@ from hpn.web.settings import Settings
 
 
 def run(options: argparse.Namespace) -> int:
-    """Migrate the database of the settings; StoreError, which says why, where the service could not use it."""
+    """Upgrade the database of the settings; raises StoreError, with the reason, where the service could not use it."""
     asyncio.run(_prepare(Store(**Settings().database())))
     print("the database is up to date, and selections can be saved in it")
     return 0

@@ -11,7 +11,7 @@ from pathlib import Path
 from pyarrow import Table
 from tqdm import tqdm
 
-from hpn.catalogue import Catalogue, load_catalogue
+from hpn.catalogue import Catalogue
 from hpn.fleet.listing import listing_of
 from hpn.fleet.order import TWO_GONE, FleetError, Order, require_writable
 from hpn.fleet.run import Engine, Use, keep_memory, size_fleet, threads
@@ -23,9 +23,9 @@ STOPPED = 1
 
 
 def run(options: argparse.Namespace) -> int:
-    """Size the axes: 0 when all are, rejected rows included; 1 when it is stopped."""
+    """Size the axes; returns 0 when all are done, rejected rows included, 1 when it is stopped."""
     settings = Settings()
-    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
+    catalogue = settings.catalogue()
     order = Order(
         axes=options.input,
         answers=options.output,
@@ -72,7 +72,7 @@ def _engine(options: argparse.Namespace) -> Engine:
 
 
 def _require_used(options: argparse.Namespace) -> None:
-    """Raise FleetError for an option that is gone, or says nothing without another one."""
+    """Raise FleetError for a removed option, or for one without effect unless another is given."""
     if options.axes is not None:
         raise FleetError(f"--axes: {TWO_GONE}")
     if options.scheduler is not None and options.engine != "dask":
@@ -87,20 +87,20 @@ def _require_report(report: Path) -> None:
     if report.suffix != ".html":
         raise FleetError(f"{report}: the suffix of a report must be .html")
     require_writable(report)
-    require("serve")  # whose page it is
+    require("serve")  # the report is one of its pages
 
 
 def _write_report(options: argparse.Namespace, order: Order, catalogue: Catalogue, answers: Iterator[Table]) -> None:
-    """Write the report, where one is wanted, whole under its name or not at all."""
+    """Write the report, where one is requested; it appears complete under its name or not at all."""
     if options.report is None:
         return
-    from hpn.web.pages.fleet_report import report_of  # a second of imports, which no fleet without a report waits for
+    from hpn.web.pages.fleet_report import report_of  # a second of imports, only for reports
 
     listing = listing_of(order, answers, catalogue)
     written = options.report.with_name(f".{options.report.name}.{os.getpid()}")
     try:
         service: str = (options.service or "").rstrip("/")
-        name = os.fsencode(options.input.name).decode("utf-8", "replace")  # whatever the locale makes of its bytes
+        name = os.fsencode(options.input.name).decode("utf-8", "replace")  # in any locale
         text = report_of(listing, name, catalogue, service, options.lang or "en")
         written.write_text(text, encoding="utf-8")
         os.replace(written, options.report)

@@ -1,4 +1,4 @@
-"""`hpn key`: an API key, and what the settings take of it."""
+"""`hpn key`: a new API key, and its pair for the settings."""
 
 import argparse
 import sys

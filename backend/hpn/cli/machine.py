@@ -1,4 +1,4 @@
-"""`hpn machine export ID FILE`, `hpn machine import FILE`: a machine of the database to a file and back."""
+"""`hpn machine export ID FILE`, `hpn machine import FILE`: copies a machine from the database to a file and back."""
 
 import argparse
 import asyncio
@@ -12,7 +12,7 @@ import msgspec
 
 from hpn import ENGINE_VERSION
 from hpn.application.unique import RepeatedNameError, require_unique
-from hpn.catalogue import Catalogue, load_catalogue
+from hpn.catalogue import Catalogue
 from hpn.documents import revision
 from hpn.documents.axis import MOST_BYTES, MOST_REVISIONS
 from hpn.documents.document import Document
@@ -35,23 +35,23 @@ TABLES = (".csv", ".parquet", ".xlsx", ".arrow", ".arrows", ".feather", ".csv.gz
 
 
 class MachineError(MendableError):
-    """Export or import that can't be done; the text says why."""
+    """Error of an export or import; the text gives the reason."""
 
 
 class CopiedRevision(Frozen, frozen=True):
-    """A revision in a file: its line, and everything that is frozen in it."""
+    """Revision in a file: its line, and its frozen document."""
 
     revision: RevisionReply
 
 
 class Copied(Reply, frozen=True):
-    """Revisions of a file, the first one first."""
+    """Revisions of a file, the oldest first."""
 
     revisions: tuple[CopiedRevision, ...] = ()
 
 
 def run(options: argparse.Namespace) -> int:
-    """Export or import a machine; MachineError, StoreError or ValidationError where that can't be."""
+    """Export or import a machine; raises MachineError, StoreError or ValidationError."""
     try:
         return asyncio.run({"export": _export, "import": _import}[options.action](options))
     except Problem as problem:
@@ -90,7 +90,7 @@ def _table_writer(file: str) -> Callable[[Frozen], bytes]:
 
 
 async def _copy_of(store: Store, machine: Machine) -> bytes:
-    """JSON of a machine as GET gives it, with its revisions, the first one first."""
+    """JSON of a machine as from GET, with its revisions, the oldest first."""
     copies = []
     for line in reversed(await store.revisions(machine.id)):
         content = await store.revision(machine.id, line.label)
@@ -108,7 +108,7 @@ async def _import(options: argparse.Namespace) -> int:
     if len(content) > MOST_BYTES:
         raise MachineError(f"{options.file}: has more than {MOST_BYTES} bytes")
     settings = Settings()
-    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
+    catalogue = settings.catalogue()
     draft = _draft(options, content, catalogue)
     store = Store(**settings.database())
     try:
@@ -136,19 +136,21 @@ def _draft(options: argparse.Namespace, content: bytes, catalogue: Catalogue) ->
 
 
 def _whole(file: str, content: bytes, catalogue: Catalogue) -> MachineDraft:
-    """Machine of a file that was exported, with its revisions as they were frozen."""
+    """Machine of an exported file, with its revisions as they were frozen."""
     try:
         require_unique(content)
         copies = msgspec.json.decode(content, type=Copied).revisions
         named: dict[str, Any] = msgspec.json.decode(content, type=dict[str, msgspec.Raw])
     except RepeatedNameError:
         raise
-    except (msgspec.MsgspecError, ValueError, RecursionError) as error:
+    except RecursionError:
+        raise MachineError(f"{file}: is no machine that was exported: it is nested too deeply") from None
+    except (msgspec.MsgspecError, ValueError) as error:
         raise MachineError(f"{file}: is no machine that was exported: {error}") from None
     named.pop("revisions", None)
-    sent = parsed(Document, msgspec.json.encode(named), require_machine)
+    document = parsed(Document, msgspec.json.encode(named), require_machine)
     _require_labels(file, [copy.revision.label for copy in copies])
-    return draft_of(sent, catalogue, None, [_revision(file, copy) for copy in copies])
+    return draft_of(document, catalogue, None, [_revision(file, copy) for copy in copies])
 
 
 def _require_labels(file: str, labels: list[str]) -> None:

@@ -10,14 +10,13 @@ from mcp.server.stdio import stdio_server
 
 from hpn.agents.server import server_of
 from hpn.agents.tools import ToolReply, answer
-from hpn.catalogue import load_catalogue
 from hpn.web.settings import Settings
 
 
 def run(options: argparse.Namespace) -> int:
     """Answer until the input ends."""
     settings = Settings()
-    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
+    catalogue = settings.catalogue()
     service = (options.service or f"http://{settings.host}:{settings.port}").rstrip("/")
 
     async def call(tool: str, arguments: Mapping[str, Any]) -> ToolReply:

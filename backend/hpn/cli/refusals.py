@@ -1,4 +1,4 @@
-"""Errors in lines that name the place and say what would be right; the exit code says whose mistake it is."""
+"""Errors as lines with the place and the accepted form; the exit code tells whose fault it is."""
 
 import argparse
 
@@ -6,17 +6,18 @@ from pydantic import ValidationError
 from pydantic_settings import SettingsError
 
 from hpn.application import InputError
-from hpn.application.faults import faults_of, pointer, sentence_of, unreadable
+from hpn.application.faults import lines_of, sentence_of, unreadable
 from hpn.cli.system import CALLERS, others
 from hpn.installed import ExtraMissingError
 from hpn.web.settings import Settings, source_of
-from hpn.words.wording import MendableError
+from hpn.words.wording import MendableError, shortened
 
 MOST_LINES = 20
 
 
 def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[str] | None]:
-    """Exit code and lines for an error of input, settings, catalogue or database; no lines for one of the program."""
+    """Exit code and lines for an error of input, settings, catalogue or database; no lines for the program's own
+    fault."""
     if isinstance(error, ExtraMissingError):
         return CALLERS, [f"hpn {options.command}: {error}"]
     if isinstance(error, MendableError):
@@ -33,18 +34,15 @@ def words_of(error: Exception, options: argparse.Namespace) -> tuple[int, list[s
 
 
 def _wrong_input(error: ValidationError | InputError, options: argparse.Namespace) -> list[str]:
-    """A line for each field, named by its pointer; for what is no JSON a line that names the file."""
+    """Line for each field, named by its pointer; for invalid JSON one line with the file's name."""
     if isinstance(error, ValidationError) and (text := unreadable(error)):
         file = "standard input" if options.file == "-" else options.file
         return [f"{file}: {text}; an application is a JSON object, such as README.md shows"]
-    lines = [f"{pointer(location) or '/'}: {detail}" for location, detail, _ in faults_of(error)]
-    if len(lines) > MOST_LINES:
-        lines[MOST_LINES:] = [f"and {len(lines) - MOST_LINES} more"]
-    return lines
+    return shortened(lines_of(error), MOST_LINES)
 
 
 def _wrong_settings(error: ValidationError, options: argparse.Namespace) -> list[str]:
-    """A line for each wrong setting, named as it was given: by option, variable or file."""
+    """Line for each wrong setting, named as it was given: by option, variable or file."""
     lines = []
     for entry in error.errors(include_url=False, include_context=False, include_input=False):
         text = sentence_of(entry).text

@@ -7,7 +7,6 @@ import sys
 
 from hpn.application import Application
 from hpn.application.unique import require_unique
-from hpn.catalogue import load_catalogue
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
 from hpn.engine.selection import Selection, encode, select
@@ -17,13 +16,14 @@ from hpn.web.settings import Settings
 from hpn.words.wording import MendableError, telling_decimals
 
 MAXIMUM_FILE_BYTES = 32_000_000
-"""Of an application: 10,000 phases, however they are laid out."""
+"""Most bytes of an application: enough for 10,000 phases in any layout."""
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the reply, as JSON into a pipe and as a table on a terminal unless asked otherwise."""
+    """Print the reply, by default as JSON into a pipe and as a table on a terminal; returns 1 without a suitable
+    gear."""
     application, settings = _application(options.file), Settings()
-    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
+    catalogue = settings.catalogue()
     selection = select(application, catalogue, to_link)
     if options.json or not (options.table or sys.stdout.isatty()):
         sys.stdout.write(encode(selection).decode() + "\n")
@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _application(name: str) -> Application:
-    """The application of a file; raises ValidationError, and InputError for a name twice in one object."""
+    """Application of a file; raises ValidationError, and InputError for a name twice in one object."""
     content = _content(name)
     if is_shell(content):
         content = _of_sizing(name, content)
@@ -43,17 +43,19 @@ def _application(name: str) -> Application:
 
 
 def _of_sizing(name: str, content: bytes) -> bytes:
-    """JSON of the application in a sizing by IDTA 02021; what is not used of it goes to standard error."""
-    found = opened(content)
-    if found.problem:
-        raise MendableError(f"{name}: {found.problem.text}")
-    for place in found.unused:
+    """JSON of the application in a sizing by IDTA 02021; its unused elements go to standard error."""
+    sizing = opened(content)
+    if sizing.problem:
+        raise MendableError(f"{name}: {sizing.problem.text}")
+    for place in sizing.unused:
         print(f"not used: {place}", file=sys.stderr)
-    return found.text.encode()
+    if sizing.note:
+        print(sizing.note.text, file=sys.stderr)
+    return sizing.text.encode()
 
 
 def _content(name: str) -> bytes:
-    """Content of a file, - for standard input; a mark at the beginning, as some editors write it, is dropped."""
+    """Content of a file, or of standard input for -; a byte order mark at its beginning is dropped."""
     if name == "-":
         if sys.stdin is None:
             raise OSError(errno.EBADF, "is closed", "standard input")

@@ -13,17 +13,18 @@ from hpn.web.settings import Settings
 
 
 def run(options: argparse.Namespace) -> int:
-    """Serve until a signal says otherwise; a wrong catalogue or database stops here, with its place."""
+    """Serve until a signal ends it; a faulty catalogue or database ends it at the start, with the place of the
+    fault."""
     values = {name: getattr(options, name) for name in ("host", "port", "workers")}
     settings = Settings(**{name: value for name, value in values.items() if value is not None})
     load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
-    _require_free(settings.host, settings.port)  # first: beside a service that runs, its database stays as it is
+    _require_free(settings.host, settings.port)  # first: while another service runs, its database must stay as it is
     asyncio.run(_migrate(Store(**settings.database())))
     return serve.run(settings)
 
 
 def _require_free(host: str, port: int) -> None:
-    """Raise OSError, which says so, where nobody can listen there; the server itself would only write it to its log."""
+    """Raise OSError, with the reason, where the address can't be listened on; the server would only log it."""
     place = f"{host} port {port} (HPN_HOST, HPN_PORT)"
     try:
         for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
@@ -39,7 +40,7 @@ def _require_free(host: str, port: int) -> None:
 
 
 async def _migrate(store: Store) -> None:
-    """Bring the database up to date before any worker starts, so that a refusal is a text and not a trace."""
-    with suppress(StoreUnavailableError):  # the calculator works without
+    """Upgrade the database before any worker starts, so that a refusal is a text and not a trace."""
+    with suppress(StoreUnavailableError):  # the calculator works without a database
         await store.open()
     await store.close()

@@ -1,4 +1,4 @@
-"""Settings in the words of `hpn --help`."""
+"""Settings as text for `hpn --help`."""
 
 import shutil
 import textwrap
@@ -14,14 +14,14 @@ INDENT = " " * 6
 
 
 def text() -> str:
-    """Every setting with its default and what it means, as wide as the terminal."""
+    """All settings with default and meaning, in lines of the terminal's width."""
     head = "settings, as environment variables or files of HPN_SECRETS_FOLDER; docs/settings.md says more:"
     return "\n".join([head, *_lines(min(shutil.get_terminal_size().columns, 120))]) + "\n"
 
 
 def _lines(width: int) -> Iterator[str]:
     for name, field in Settings.model_fields.items():
-        default = _shown(field.default)
+        default = _text(field.default)
         yield f"  HPN_{name.upper()}{f' ({default})' if default else ''}"
         yield from textwrap.wrap(
             field.description or "",
@@ -33,8 +33,8 @@ def _lines(width: int) -> Iterator[str]:
         )
 
 
-def _shown(default: Any) -> str:
-    """A default as a variable has it; blank for none."""
+def _text(default: Any) -> str:
+    """Default in the form of a variable; blank for none."""
     if isinstance(default, SecretStr):
         default = default.get_secret_value()
     if isinstance(default, tuple | frozenset):

@@ -1,4 +1,4 @@
-"""Errors of the operating system in words; a module of its own, because it needs no other."""
+"""Errors of the operating system in words; a module of its own because it imports no other."""
 
 import argparse
 import errno
@@ -13,14 +13,14 @@ MEANING = {
 
 
 def others(options: argparse.Namespace) -> int:
-    """Exit code for what is not the caller's mistake; 1 of `hpn select` is an answer, that no gear is suitable."""
+    """Exit code for errors that are not the caller's; in `hpn select` 1 is an answer: no gear is suitable."""
     return 3 if options.command == "select" else 1
 
 
 def words_of(error: OSError, options: argparse.Namespace) -> tuple[int, list[str]]:
-    """Exit code and line: the caller's mistake where the error names a file, or what else was given."""
+    """Exit code and line; the caller's mistake where the error names a file or another argument."""
     number, text = error.errno or 0, error.strerror or str(error)
-    if text == os.strerror(number):  # what a command says itself is more than that
+    if text == os.strerror(number):  # a command's own words say more
         text = MEANING.get(number, text)
     if error.filename is None:
         return others(options), [f"hpn can’t go on: {text}"]

@@ -1,4 +1,4 @@
-"""`hpn verify`: the figures of a file beside those that are calculated again."""
+"""`hpn verify`: figures of a file beside newly calculated ones."""
 
 import argparse
 import errno
@@ -11,8 +11,7 @@ import msgspec
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application
-from hpn.catalogue import load_catalogue
-from hpn.verify.shown import UnreadableFileError
+from hpn.verify.shown import FileSubject, UnreadableFileError
 from hpn.verify.verdict import Finding, Verdict
 from hpn.verify.verify import verify
 from hpn.web.settings import Settings
@@ -23,12 +22,12 @@ DIFFERS = 3
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print what is the same, what differs and why, and what can't be checked; 0 where nothing differs."""
-    settings = Settings()
-    catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds)
-    application = _application(options.application) if options.application else None
+    """Print the number of equal figures, the differences with reasons, and the unchecked lines; returns 0 or
+    DIFFERS."""
+    catalogue = Settings().catalogue()
+    question = _asked(options.application) if options.application else None
     try:
-        verdict = verify(_content(options.file), catalogue, application)
+        verdict = verify(_content(options.file), catalogue, question)
     except UnreadableFileError as error:
         raise UnreadableFileError(f"{options.file}: {error}") from None
     if options.json:
@@ -38,14 +37,15 @@ def run(options: argparse.Namespace) -> int:
     return DIFFERS if verdict.differs else 0
 
 
-def _application(path: Path) -> Application:
-    """Application of a file of JSON: itself, or that of a saved selection."""
+def _asked(path: Path) -> FileSubject:
+    """Content of a JSON file: an application, or a saved selection with the gear of its files."""
     try:
         value = json.loads(_content(path))
     except (ValueError, RecursionError):
         raise UnreadableFileError(f"{path}: is no JSON") from None
-    is_saved = isinstance(value, dict) and "application" in value
-    return Application.model_validate(value["application"] if is_saved else value)
+    if not isinstance(value, dict) or "application" not in value:
+        return FileSubject(Application.model_validate(value))
+    return FileSubject(Application.model_validate(value["application"]), str(value.get("designation") or ""))
 
 
 def _content(path: Path) -> bytes:
@@ -83,5 +83,5 @@ REASONS = {
 
 def _sentence(finding: Finding) -> str:
     reasons = " or ".join(REASONS[reason] for reason in finding.reasons)
-    shown, calculated = (f"“{text}”" if text else "nothing" for text in (finding.shown, finding.calculated))
-    return f"{finding.place}: shows {shown}, calculated {calculated}: {reasons}"
+    figure, calculated = (f"“{text}”" if text else "nothing" for text in (finding.shown, finding.calculated))
+    return f"{finding.place}: shows {figure}, calculated {calculated}: {reasons}"

@@ -1,4 +1,4 @@
-"""`hpn --version`: which engine and which catalogue answer here."""
+"""`hpn --version`: versions of engine and catalogue."""
 
 import argparse
 
@@ -8,7 +8,7 @@ from hpn.web.settings import Settings
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the versions that stand in every reply."""
+    """Print the versions as in every reply."""
     settings = Settings()
     catalogue = load_catalogue(settings.catalogue_folder, settings.catalogue_supplement)
     print(f"HPN Select {ENGINE_VERSION}, catalogue {catalogue.version}")

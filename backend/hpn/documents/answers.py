@@ -1,8 +1,7 @@
-"""Answers of the axes of a document: the gear of each, and how it does."""
+"""Answers of the axes of a document: the gear of each, with its verdict and figures."""
 
 from collections.abc import Iterable, Sequence
 from itertools import islice
-from math import isfinite
 from typing import Annotated, Any, Literal, NamedTuple
 
 import msgspec
@@ -18,54 +17,54 @@ from hpn.documents.merge import Fault, Resolved
 from hpn.engine.batch import judge_batch
 from hpn.engine.candidates import Candidate, LifeOf
 from hpn.engine.evaluation import STATUS, UNRATED, Evaluation
-from hpn.engine.selection import Judged, Selection
+from hpn.engine.selection import Judgement, Selection
 from hpn.physics.equations import FloatArray
 from hpn.words.quantities import CANDIDATE
-from hpn.words.reply import Reply, described
+from hpn.words.reply import Reply, described, finite
 from hpn.words.wording import N_, Sentence
 
 AxisStatus = Literal["suitable", "unsuitable", "unrated", "open"]
 MOST_FAULTS = 20
-"""Faults that are kept of an axis."""
+"""Most faults that are kept of an axis."""
 
 NO_CANDIDATE = N_("{gear} is not a candidate: the selected ratios or sizes exclude it")
 
 
 class AxisFault(Reply, frozen=True):
-    """One thing wrong with an axis."""
+    """One fault of an axis."""
 
     pointer: Annotated[str, Field(description="JSON pointer into the resolved application, or to the ordering code.")]
     code: Annotated[str, Field(description="Code for programs.")]
-    detail: Annotated[str, Field(description="What would be right.")]
-    sentence: Annotated[Any, Field(description="The same as template and values, for any language.")] = None
+    detail: Annotated[str, Field(description="Expected value or form.")]
+    sentence: Annotated[Any, Field(description="The detail as template and values, for other languages.")] = None
 
     @classmethod
     def of(cls, faults: Iterable[Fault]) -> tuple["AxisFault", ...]:
-        """Faults as they are kept, no more than are named of any input."""
+        """Faults in stored form, at most MOST_FAULTS."""
         named = islice(faults, MOST_FAULTS)
         return tuple(cls.at(pointer(location), sentence, code) for location, sentence, code in named)
 
     @classmethod
     def at(cls, pointer: str, sentence: Sentence, code: str) -> "AxisFault":
-        """A fault at a place."""
+        """Fault at a place."""
         return cls(pointer, code, sentence.text, msgspec.to_builtins(sentence))
 
     @property
-    def told(self) -> Sentence:
-        """The sentence; of an earlier version, which kept its text alone, that text."""
+    def wording(self) -> Sentence:
+        """Sentence of the fault; an answer of an earlier version kept only its text."""
         if self.sentence is None:
             return Sentence("{text}", {"text": self.detail}, ("text",))
         return msgspec.convert(self.sentence, Sentence)
 
     @property
     def location(self) -> Location:
-        """Its place."""
+        """Place of the fault."""
         parts = (part.replace("~1", "/").replace("~0", "~") for part in self.pointer.split("/")[1:])
         return tuple(int(part) if part.isdecimal() and len(part) < 10 else part for part in parts)
 
 
 class AxisQuestion(NamedTuple):
-    """Resolved application of an axis, and the ordering code of the gear that it is to have, if any."""
+    """Resolved application of an axis, and the ordering code of its ordered gear, if any."""
 
     resolved: Resolved
     ordering_code: str | None = None
@@ -81,7 +80,7 @@ class AxisAnswer(Reply, frozen=True):
 
     status: Annotated[AxisStatus, Field(description="Verdict on the gear; open where there is no answer.")]
     selected: Annotated[str | None, Field(description="Designation of the first suitable gear.")] = None
-    designation: Annotated[str | None, Field(description="Gear that the figures are of.")] = None
+    designation: Annotated[str | None, Field(description="Gear of the figures.")] = None
     governing_check: str | None = None
     utilisation: float | None = None
     life_L10_h: float | None = None
@@ -89,33 +88,36 @@ class AxisAnswer(Reply, frozen=True):
     shortest_life_of: LifeOf | None = None
     natural_frequency_Hz: float | None = None
     motor_torque_limit_Nm: float | None = None
-    weight_kg: Annotated[float | None, Field(description="Mass of one such gear.")] = None
+    weight_kg: Annotated[float | None, Field(description="Mass of one gear.")] = None
     suitable: Annotated[int | None, Field(description="Number of suitable gears.")] = None
     runner_up: Annotated[str | None, Field(description="Designation of the second suitable gear.")] = None
     average_torque_Nm: Annotated[float | None, Field(description="Average torque T_av of the cycle.")] = None
     holds: Annotated[
         bool | None, Field(description="True: the gear passes over the whole tolerance; null without tolerances.")
     ] = None
-    worst_utilisation: Annotated[float | None, Field(description="Its utilisation in the worst case.")] = None
-    worst_governing_check: Annotated[str | None, Field(description="Check that has it.")] = None
+    worst_utilisation: Annotated[float | None, Field(description="Utilisation of the gear in the worst case.")] = None
+    worst_governing_check: Annotated[str | None, Field(description="Check with that utilisation.")] = None
     not_asked: Annotated[
-        tuple[str, ...], Field(description="Paths of common values that need what this axis lacks.")
+        tuple[str, ...],
+        Field(
+            description="Paths of common values that are not applied, because the axis lacks an input that they need."
+        ),
     ] = ()
     unknown: Annotated[
-        tuple[str, ...], Field(description="Figures that the version of this answer did not know; they are null.")
+        tuple[str, ...], Field(description="Figures unknown to the version that made this answer; they are null.")
     ] = ()
-    faults: Annotated[tuple[AxisFault, ...], Field(description="Reasons for which an axis is open.")] = ()
+    faults: Annotated[tuple[AxisFault, ...], Field(description="Reasons why the axis is open.")] = ()
     engine_version: Annotated[str, Field(description="Version of the calculation.")] = ENGINE_VERSION
-    catalogue_version: Annotated[str, Field(description="Catalogue that was asked.")] = ""
+    catalogue_version: Annotated[str, Field(description="Version of the catalogue.")] = ""
 
 
 def answers(axes: Sequence[AxisQuestion], catalogue: Catalogue) -> list[AxisAnswer]:
-    """Answers to axes, all of them judged together; an axis whose application has a fault is open."""
-    # Copies, so that axes with one application have a code each.
+    """Answers to axes, judged together; an axis whose application has a fault is open."""
+    # Copies, so that axes with the same application keep their own codes.
     applications = [each and each.model_copy() for each in (question.resolved.application for question in axes)]
     codes = {id(each): question.ordering_code for each, question in zip(applications, axes, strict=True)}
 
-    def answered(judged: Judged) -> AxisAnswer | InputError:
+    def answered(judged: Judgement) -> AxisAnswer | InputError:
         return _answered(judged, codes[id(judged.application)])
 
     sound = [application for application in applications if application is not None]
@@ -131,7 +133,7 @@ def _whole(resolved: Resolved, answer: AxisAnswer | InputError | None, catalogue
     return structs.replace(answer, not_asked=resolved.not_asked, catalogue_version=catalogue.version)
 
 
-def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
+def _answered(judged: Judgement, code: str | None) -> AxisAnswer | InputError:
     evaluation, index = judged.evaluation, judged.index
     try:
         gear = _foremost(evaluation, index) if code is None else _ordered(evaluation, code)
@@ -146,7 +148,7 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
         selected=outcome.selected,
         designation=rows[gear].designation,
         governing_check=None if verdict == UNRATED else governing,
-        utilisation=_finite(evaluation.utilisation.item(index, gear)),
+        utilisation=finite(evaluation.utilisation.item(index, gear)),
         life_L10_h=_figure(figures.life_L10_h, index, gear),
         shortest_life_h=_figure(figures.shortest_life_h, index, gear),
         shortest_life_of=figures.shortest_life_of[index].tolist()[gear] or None,
@@ -155,7 +157,7 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
         weight_kg=rows[gear].weight_kg,
         suitable=outcome.suitable,
         runner_up=rows[evaluation.order.item(index, 1)].designation if outcome.suitable > 1 else None,
-        average_torque_Nm=_finite(evaluation.case.duty.average_torque_Nm.item(index)),
+        average_torque_Nm=finite(evaluation.case.duty.average_torque_Nm.item(index)),
         holds=holds,
         worst_utilisation=worst,
         worst_governing_check=worst_check,
@@ -163,7 +165,7 @@ def _answered(judged: Judged, code: str | None) -> AxisAnswer | InputError:
 
 
 def answer_of(selection: Selection, candidate: Candidate, catalogue: Catalogue) -> AxisAnswer:
-    """The same out of a whole selection, for the candidate that is shown first."""
+    """Answer of an axis from a whole selection, for the candidate that is shown first."""
     suitable = [each.designation for each in selection.candidates if each.status == "suitable"]
     worst = None if candidate.worst is UNSET else candidate.worst
     return AxisAnswer(
@@ -189,14 +191,15 @@ def answer_of(selection: Selection, candidate: Candidate, catalogue: Catalogue) 
 
 
 def _foremost(evaluation: Evaluation, index: int) -> int:
-    """Place of the selected gear, else of the first that is judged or lacks an input alone, as a selection shows it."""
+    """Place of the selected gear, else of the first gear that is judged or lacks only an input, as in a selection."""
     order = evaluation.order[index]
     judged = evaluation.is_judged[index] | evaluation.lacks_input[index]
     return int(order[judged[order].argmax()])
 
 
 def _ordered(evaluation: Evaluation, text: str) -> int:
-    """Place of the gear of an ordering code; InputError for a code that is none, or of a gear that is no candidate."""
+    """Place of the gear of an ordering code; raises InputError for an invalid code, or for a gear that is no
+    candidate."""
     code = read_ordering_code(evaluation.catalogue, text)
     if isinstance(code, OrderingCode):
         names = [gear.designation for gear in evaluation.gears.rows]
@@ -207,9 +210,5 @@ def _ordered(evaluation: Evaluation, text: str) -> int:
 
 
 def _figure(values: FloatArray, index: int, gear: int) -> float | None:
-    """Figure of a gear under an application, of an array that may be the same for every gear."""
-    return _finite(values.item(index, gear if values.shape[1] > 1 else 0))
-
-
-def _finite(value: float) -> float | None:
-    return value if isfinite(value) else None
+    """Figure of a gear under an application, from an array that may hold one value for all gears."""
+    return finite(values.item(index, gear if values.shape[1] > 1 else 0))

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
 from hpn.application.tolerances import MOST_TOLERANCES
@@ -15,7 +15,7 @@ from hpn.words.titles import Name, Note, Title
 Json = dict[str, Any]
 
 MOST_AXES, MOST_PHASES, MOST_BYTES, MOST_REVISIONS = 10_000, 200_000, 32_000_000, 1_000
-"""Axes, phases or moves of all axes, bytes of a request, and revisions that a document may have."""
+"""Limits of a document: axes, phases or moves of all axes, bytes of a request, and revisions."""
 
 MOST_OF_A_KIND, MOST_NUMBER = 1_000_000, 2**31 - 1
 
@@ -39,13 +39,14 @@ Quantity = Annotated[int, Field(strict=True, ge=1, le=MOST_OF_A_KIND), WHOLE]
 
 
 class Axis(Model):
-    """One axis: what it is called, how often there is one, and what is asked of it beside the common values."""
+    """One axis: its name, its quantity, and its own values beside the common ones."""
 
+    read_only = frozenset(("resolved", "answer", "updated", "updated_by"))
     number: Annotated[int, Field(strict=True, ge=1, le=MOST_NUMBER), WHOLE] | None = Field(
-        None, description="Number of a removed axis, which comes back; else it is ignored."
+        None, description="Number of a removed axis, to restore it; otherwise ignored."
     )
     name: Name | None = Field(None, description="Your name for the axis; it need not be unique.", examples=["Y bridge"])
-    quantity: Quantity = Field(1, description="Number of such axes.", examples=[1])
+    quantity: Quantity = Field(1, description="Number of equal axes.", examples=[1])
     note: Note | None = Field(None, description="A note on the axis.")
     ordering_code: Title | None = Field(
         None,
@@ -54,28 +55,17 @@ class Axis(Model):
         examples=["HPN-20A-5-J6-BH-AF1"],
     )
     without: Without = Field(
-        (), description="Paths of common values that do not hold for this axis.", examples=[["requirements.life_h"]]
+        (), description="Paths of common values that this axis does not inherit.", examples=[["requirements.life_h"]]
     )
     application: dict[str, Any] = Field(
         default_factory=dict,
-        description="The axis’s own part of its application, kept as it is sent; what it lacks is inherited. One that "
-        "cannot be calculated is kept, too, and leaves the axis open.",
+        description="The axis’s own part of its application, stored as sent; missing values are inherited. A part "
+        "that cannot be calculated is stored, too, and leaves the axis open.",
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _leaves_out_what_is_given_alone(cls, value: Any) -> Any:
-        if isinstance(value, dict) and not READ_ONLY.isdisjoint(value):
-            return {name: each for name, each in value.items() if name not in READ_ONLY}
-        return value
-
-
-READ_ONLY = frozenset(("resolved", "answer", "updated", "updated_by"))
-"""Fields of an axis that are given back, and ignored when they are sent."""
 
 
 def phases_of(own: Mapping[str, Any]) -> int:
-    """Number of phases or moves in an axis's own part of an application, whatever else is wrong with it."""
+    """Number of phases or moves in an axis's own part of an application, also where that is invalid."""
     return sum(len(rows) for rows in _rows_of(own))
 
 

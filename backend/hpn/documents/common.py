@@ -1,4 +1,4 @@
-"""Common values: what holds for every axis of a document that has nothing of its own there."""
+"""Common values: they hold for every axis of a document without a value of its own."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Self
@@ -28,25 +28,25 @@ OWN = frozenset(
         "output_load.belt_tension_factor",
     )
 )
-"""Fields beside common ones that are always the axis's own: they say how this axis is built and loaded."""
+"""Fields that are always the axis's own, though they stand beside common ones: they describe its build and load."""
 
 OWN_PARTS = ("duty_cycle", "emergency_stop", "requirements.motor", "output_load.drive")
-"""Parts of an application of which every field is the axis's own."""
+"""Parts of an application whose fields are all the axis's own."""
 
 COMMON = tuple(
     path for path in FIELDS if path not in OWN and not any(path.startswith(f"{part}.") for part in OWN_PARTS)
 )
-"""Paths of the fields that common values may have: every one but those that are the axis's own."""
+"""Paths of the fields that common values may have: all except the axis's own."""
 
 TOLERANCE = "tolerances."
-"""Beginning of the path of a common tolerance, which ends with that of its input."""
+"""Beginning of the path of a common tolerance; the path of its input follows."""
 
 EXCLUSIVE = (("requirements.position_error_arcmin", "requirements.position_error_mm"),)
-"""Fields of which an application has one at most: an own value displaces the common one of the other."""
+"""Pairs of fields of which an application has at most one: an own value displaces the common value of the other."""
 
 
 def _inheritable(model: type[Model], part: str) -> Mapping[str, Any]:
-    """Fields of a part of an application that may be common, each null by default, which is inherited."""
+    """Fields of a part of an application that may be common; each is null by default, and a null is inherited."""
     return {
         name: (
             _kind(field) | None,
@@ -76,13 +76,13 @@ CommonRequirements = create_model(
 CommonLoad = create_model(
     "CommonLoad",
     __base__=Model,
-    __doc__="How the output bearing of every loaded axis is judged.",
+    __doc__="Conditions for the output bearing of every axis with a load.",
     **_inheritable(OutputLoad, "output_load"),
 )
 
 
 class Common(Model):
-    """Values that every axis inherits where it has none of its own; a null counts as not given."""
+    """Values that every axis without its own inherits; null counts as not given."""
 
     requirements: CommonRequirements | None = Field(None, description="Requirements on every gear.")
     output_load: CommonLoad | None = Field(None, description="Conditions of every axis that has a load.")
@@ -90,8 +90,8 @@ class Common(Model):
     rank_by: RankBy | None = Field(None, description="Order of the suitable gears.")
     tolerances: Tolerances | None = Field(
         None,
-        description="How far inputs of every axis may lie from their values, by their paths as in an application; an "
-        "axis without that input skips it.",
+        description="Tolerances of inputs of every axis, by their paths as in an application; an axis without the "
+        "input ignores its tolerance.",
         examples=[{"torque_Nm": {"percent": 10.0}}],
     )
 
@@ -116,12 +116,12 @@ class Common(Model):
 
     @property
     def values(self) -> Json:
-        """Values that are given, by their paths."""
+        """Given values, by their paths."""
         return dict(flat(self.sent))
 
     @property
     def sent(self) -> Json:
-        """The values that are given as JSON."""
+        """Given values as JSON."""
         return self.model_dump(mode="json", exclude_none=True)
 
 
@@ -131,7 +131,7 @@ def is_common(path: str) -> bool:
 
 
 def flat(common: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Path and value of everything that is given in JSON of common values."""
+    """Paths and values of all given values in JSON of common values."""
     for name, value in common.items():
         if isinstance(value, Mapping):
             yield from ((f"{name}.{inner}", each) for inner, each in value.items() if each is not None)

@@ -1,11 +1,11 @@
-"""Differences of two documents as they were, axis by axis: inputs, verdicts and figures.
+"""Differences of two frozen documents, axis by axis: inputs, verdicts and figures.
 
-Axes are matched by their numbers, inputs by their places, and numbers are the same within the tolerance of the
-comparer. An input that both axes inherit stands among the common ones alone.
+Axes are matched by their numbers, inputs by their places, and numbers are equal within the tolerance of the comparison.
+An input that both axes inherit appears only among the common values.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -23,7 +23,7 @@ from hpn.words.reply import Reply
 
 VERDICTS = ("status", "selected", "designation", "governing_check")
 NOT_COMPARED = (*("engine_version", "catalogue_version"), *("faults", "not_asked", "unknown"))
-"""Fields of an answer without a difference of their own: versions, and what follows from the inputs."""
+"""Fields of an answer without a difference of their own: versions, and consequences of the inputs."""
 
 FIGURES = tuple(name for name in AxisAnswer.__struct_fields__ if name not in (*VERDICTS, *NOT_COMPARED))
 
@@ -31,7 +31,7 @@ OWN = ("name", "quantity", "note", "ordering_code")
 TITLE_BLOCK = ("title", "reference", "author", "note")
 
 DEEPEST = 6
-"""Depth of an application; what stands deeper is compared as a whole."""
+"""Depth of an application; deeper values are compared as a whole."""
 
 FROM_TO = {"value_from": "from", "value_to": "to"}
 SIDES = {"side_from": "from", "side_to": "to"}
@@ -40,13 +40,13 @@ Change = Literal["changed", "added", "removed"]
 
 
 class DifferentInput(Reply, frozen=True, rename=FROM_TO):
-    """One input that two documents give differently; null where one lacks it."""
+    """One input that differs between two documents; null where a document lacks it."""
 
-    pointer: Annotated[str, Field(description="JSON pointer into the axis, of a common value into the document.")]
+    pointer: Annotated[str, Field(description="JSON pointer into the axis; for a common value, into the document.")]
     value_from: Annotated[Any, Field(description="Value in the first document.")]
-    value_to: Annotated[Any, Field(description="Value in the second.")]
-    inherited_from: Annotated[bool, Field(description="True where the first value is the machine’s.")] = False
-    inherited_to: Annotated[bool, Field(description="True where the second value is.")] = False
+    value_to: Annotated[Any, Field(description="Value in the second document.")]
+    inherited_from: Annotated[bool, Field(description="True: the first value is inherited from the machine.")] = False
+    inherited_to: Annotated[bool, Field(description="True: the second value is inherited from the machine.")] = False
 
 
 class DifferentAnswer(Reply, frozen=True, rename=FROM_TO):
@@ -54,41 +54,45 @@ class DifferentAnswer(Reply, frozen=True, rename=FROM_TO):
 
     field: Annotated[str, Field(description="Name of the field of the answer.")]
     value_from: Annotated[Any, Field(description="Value in the first document.")]
-    value_to: Annotated[Any, Field(description="Value in the second.")]
+    value_to: Annotated[Any, Field(description="Value in the second document.")]
 
 
 class AxisSide(Reply, frozen=True):
     """An axis of one document in brief."""
 
     gear: Annotated[str | None, Field(description="Designation of its gear; null without one.")]
-    designation: Annotated[str | None, Field(description="Gear that the figures are of: its own, or the nearest.")]
+    designation: Annotated[
+        str | None, Field(description="Gear of the figures: the axis’s own gear, or the nearest miss.")
+    ]
     status: Annotated[AxisStatus, Field(description="Verdict on that gear.")]
     governing_check: Annotated[str | None, Field(description="Code of the check closest to its limit.")]
     utilisation: Annotated[float | None, Field(description="Utilisation of that gear.")]
 
     @classmethod
     def of(cls, axis: FrozenAxis) -> "AxisSide":
-        """An axis in brief."""
+        """Axis in brief."""
         answer = axis.answer
         return cls(gear_of(axis), answer.designation, answer.status, answer.governing_check, answer.utilisation)
 
 
 class DifferentAxis(Reply, frozen=True, rename=SIDES):
-    """An axis that differs, or that only one document has."""
+    """An axis that differs, or exists in one document only."""
 
     number: Annotated[int, Field(description="Number of the axis.")]
-    name: Annotated[str | None, Field(description="Its name, in the second document where that has it.")]
-    change: Annotated[Change, Field(description="Axis of both documents, of the second or of the first alone.")]
+    name: Annotated[str | None, Field(description="Name of the axis, from the second document if it has the axis.")]
+    change: Annotated[Change, Field(description="Axis in both documents, in the second only, or in the first only.")]
     side_from: Annotated[AxisSide | None, Field(description="The axis in the first document.")]
-    side_to: Annotated[AxisSide | None, Field(description="The axis in the second.")]
-    effect: Annotated[float | None, Field(description="Increase of its utilisation; null where one has none.")]
+    side_to: Annotated[AxisSide | None, Field(description="The axis in the second document.")]
+    effect: Annotated[
+        float | None, Field(description="Increase of the utilisation; null where a document has no utilisation.")
+    ]
     inputs: Annotated[tuple[DifferentInput, ...], Field(description="Inputs that differ.")]
     verdicts: Annotated[tuple[DifferentAnswer, ...], Field(description="Verdicts that differ.")]
     figures: Annotated[tuple[DifferentAnswer, ...], Field(description="Figures that differ.")]
 
     @property
     def lost_its_gear(self) -> bool:
-        """True for an axis without a suitable gear that was suitable, or is new."""
+        """True for an axis without a suitable gear that had one before, or is new."""
         was = self.side_from is None or self.side_from.status == "suitable"
         return self.side_to is not None and self.side_to.status != "suitable" and was
 
@@ -99,20 +103,21 @@ class DifferentAxis(Reply, frozen=True, rename=SIDES):
 
 
 class DocumentDifferences(Reply, frozen=True, rename=SIDES):
-    """Differences of two documents: axes without a suitable gear first, then those with another, then by effect."""
+    """Differences of two documents: axes without a suitable gear first, then axes with another gear, then by effect."""
 
     side_from: Annotated[Summary, Field(description="The first document in brief.")]
-    side_to: Annotated[Summary, Field(description="The second.")]
+    side_to: Annotated[Summary, Field(description="The second document in brief.")]
     common: Annotated[tuple[DifferentInput, ...], Field(description="Title block and common values that differ.")]
-    order: Annotated[bool, Field(description="True where the axes of both stand in another order.")]
+    order: Annotated[bool, Field(description="True: the order of the axes differs.")]
     axes: Annotated[tuple[DifferentAxis, ...], Field(description="Axes that differ.")]
-    same: Annotated[int, Field(description="Number of axes of both that do not differ.")]
+    same: Annotated[int, Field(description="Number of axes in both documents without a difference.")]
 
 
 def differences(
     one: Frozen, other: Frozen, catalogues: tuple[Catalogue | None, Catalogue | None] = (None, None)
 ) -> DocumentDifferences:
-    """Differences of two documents; gears are counted and weighed where the catalogue of each one's answers is kept."""
+    """Differences of two documents; gears are counted and weighed where the catalogue of a document's answers is
+    kept."""
     before, after = ({axis.number: axis for axis in side.axes} for side in (one, other))
     pairs = [(number, old, new) for number, (old, new) in aligned(before, after)]
     different = [axis for number, old, new in pairs if (axis := _axis(number, old, new))]
@@ -128,7 +133,7 @@ def differences(
 
 
 def today(document: Frozen, catalogue: Catalogue) -> Frozen:
-    """A document answered again by this engine and a catalogue; its inputs stay as they were resolved."""
+    """Document answered again by this engine and a catalogue; its inputs stay as they were resolved."""
     questions = [AxisQuestion(resolve(_json(axis.resolved), {}), axis.ordering_code) for axis in document.axes]
     axes = [
         structs.replace(axis, answer=structs.replace(answer, not_asked=axis.answer.not_asked))
@@ -148,7 +153,7 @@ def _weight(axis: DifferentAxis) -> tuple[int, float, int]:
 
 
 def _axis(number: int, old: FrozenAxis | None, new: FrozenAxis | None) -> DifferentAxis | None:
-    """Differences of an axis; None for one without."""
+    """Differences of an axis; None where there are none."""
     inputs, answered = list[DifferentInput](), list[DifferentAnswer]()
     if old is not None and new is not None:
         inputs, answered = list(_inputs(old, new)), list(_answered(old.answer, new.answer))
@@ -180,7 +185,7 @@ def _answered(old: AxisAnswer, new: AxisAnswer) -> Iterator[DifferentAnswer]:
 
 
 def _inputs(old: FrozenAxis, new: FrozenAxis) -> Iterator[DifferentInput]:
-    """Inputs of an axis that differ, by value or in being its own."""
+    """Inputs of an axis that differ, by value or by being its own."""
     for name in OWN:
         if getattr(old, name) != getattr(new, name):
             yield DifferentInput(f"/{name}", getattr(old, name), getattr(new, name))
@@ -196,15 +201,10 @@ def _inputs(old: FrozenAxis, new: FrozenAxis) -> Iterator[DifferentInput]:
         if (
             (alike and inherited[0] == inherited[1])
             or all(inherited)
-            or (not alike and _is_common(one, other, inherited))
+            or (not alike and any(inherited) and (one is None or other is None))
         ):
             continue
         yield DifferentInput(pointer(("resolved", *place)), one, other, *inherited)
-
-
-def _is_common(one: Any, other: Any, inherited: Sequence[bool]) -> bool:
-    """True for a value that one document inherits and the other lacks altogether."""
-    return any(inherited) and (one is None or other is None)
 
 
 def _common(old: Frozen, new: Frozen) -> Iterator[DifferentInput]:
@@ -228,7 +228,7 @@ Place = tuple[str | int, ...]
 
 
 def _values(value: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
-    """Places of all values in a part of an application; a list of plain values, such as ratios, is one."""
+    """Places and values in a part of an application; a list of plain values, such as ratios, is one value."""
     if isinstance(value, Mapping) and len(place) < DEEPEST:
         for name, part in value.items():
             yield from _values(part, (*place, name))

@@ -1,4 +1,4 @@
-"""A document as it is sent: title block, common values and axes."""
+"""Document as it is sent: title block, common values and axes."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Self
@@ -21,7 +21,7 @@ class TitleBlock(Model):
     title: Title | None = Field(None, description="Title for people.", examples=["Packing line"])
     reference: Title | None = Field(None, description="Your own number, such as an order number.", examples=["4711"])
     author: Title | None = Field(None, description="Author.", examples=["MA"])
-    note: Note | None = Field(None, description="A note on the whole.")
+    note: Note | None = Field(None, description="A note on the whole document.")
 
 
 Axes = Annotated[tuple[Axis, ...], WrapValidator(in_parts), at_most(MOST_AXES)]
@@ -30,15 +30,11 @@ Axes = Annotated[tuple[Axis, ...], WrapValidator(in_parts), at_most(MOST_AXES)]
 class Document(TitleBlock):
     """A machine with all its axes."""
 
+    read_only = frozenset(
+        ("id", "url", "kind", "revision", "created", "updated", "saved", "counts", "utilisation", "order")
+    )
     common: Common = Field(default_factory=Common, description="Values that hold for every axis without its own.")
     axes: Axes = Field((), description="Axes in their order.")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _leaves_out_what_is_given_alone(cls, value: Any) -> Any:
-        if isinstance(value, dict) and not READ_ONLY.isdisjoint(value):
-            return {name: each for name, each in value.items() if name not in READ_ONLY}
-        return value
 
     @model_validator(mode="after")
     def _within_bounds(self) -> Self:
@@ -47,14 +43,8 @@ class Document(TitleBlock):
         return self
 
 
-READ_ONLY = frozenset(
-    ("id", "url", "kind", "revision", "created", "updated", "saved", "counts", "utilisation", "order")
-)
-"""Fields of a machine that are given back, and ignored when they are sent."""
-
-
 def excess_of(phases: Sequence[int]) -> PydanticCustomError | None:
-    """Fault of a document whose axes have so many phases and moves; None where these are few enough."""
+    """Fault of a document with too many phases and moves in all its axes; None within the limit."""
     if (count := sum(phases)) > MOST_PHASES:
         values: Mapping[str, Any] = {"most": MOST_PHASES, "count": count}
         return PydanticCustomError("too_many_phases", TOO_MANY_PHASES, dict(values))

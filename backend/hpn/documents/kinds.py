@@ -1,4 +1,4 @@
-"""Fewest kinds of gears for the axes of a machine: what each smaller number of kinds weighs, and which axes change."""
+"""Fewest kinds of gears for the axes of a machine: mass and changed axes for each smaller number of kinds."""
 
 from collections.abc import Sequence
 from typing import Annotated, NamedTuple
@@ -11,13 +11,13 @@ from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
 from hpn.engine.evaluation import SUITABLE, BoolArray
 from hpn.engine.kinds import NO_GEAR, GearChoices, LightestSet, fewest_kinds
-from hpn.engine.selection import Judged
+from hpn.engine.selection import Judgement
 from hpn.physics.equations import FloatArray
 from hpn.words.reply import Reply
 
 
 class Sought(NamedTuple):
-    """An axis that takes part: its number, quantity, application, and the designation of the gear that it has now."""
+    """Axis that takes part: its number, quantity, application, and the designation of its present gear."""
 
     number: int
     quantity: int
@@ -26,42 +26,50 @@ class Sought(NamedTuple):
 
 
 class GearChange(Reply, frozen=True, rename={"gear_from": "from", "gear_to": "to"}):
-    """One axis that takes another gear."""
+    """One axis that changes its gear."""
 
     axis: Annotated[int, Field(description="Number of the axis.")]
-    gear_from: Annotated[str | None, Field(description="Designation of its gear now; null for none.")]
-    gear_to: Annotated[str, Field(description="Designation of the gear that it takes.")]
-    weight_kg: Annotated[float | None, Field(description="Mass that its gears gain; null where one is not known.")]
-    utilisation: Annotated[float, Field(description="Utilisation of the gear that it takes.")]
+    gear_from: Annotated[str | None, Field(description="Designation of the present gear; null for none.")]
+    gear_to: Annotated[str, Field(description="Designation of the new gear.")]
+    weight_kg: Annotated[
+        float | None, Field(description="Increase in the mass of its gears; null where a mass is not known.")
+    ]
+    utilisation: Annotated[float, Field(description="Utilisation of the new gear.")]
 
 
 class KindsStep(Reply, frozen=True):
     """The lightest set with a number of kinds."""
 
     count: Annotated[int, Field(description="Number of kinds.")]
-    gears: Annotated[tuple[str, ...], Field(description="Their designations, in the order of the catalogue.")]
+    gears: Annotated[tuple[str, ...], Field(description="Designations of the gears, in the order of the catalogue.")]
     weight_kg: Annotated[float, Field(description="Mass of the gears of every axis, times its quantity.")]
-    proven: Annotated[bool, Field(description="No lighter set of so many kinds exists; else the best within a second.")]
-    changes: Annotated[tuple[GearChange, ...], Field(description="Axes that take another gear than now.")]
+    proven: Annotated[
+        bool,
+        Field(
+            description="True: no lighter set with this number of kinds exists. False: the best one found within a "
+            "second."
+        ),
+    ]
+    changes: Annotated[tuple[GearChange, ...], Field(description="Axes that change their gear.")]
 
 
 class Forced(Reply, frozen=True):
-    """A gear that no set can be without."""
+    """A gear that every set needs."""
 
     gear: Annotated[str, Field(description="Designation.")]
-    axes: Annotated[tuple[int, ...], Field(description="Numbers of the axes that no other gear suits.")]
+    axes: Annotated[tuple[int, ...], Field(description="Numbers of the axes that only this gear suits.")]
 
 
 class MachineKinds(Reply, frozen=True):
-    """Fewest kinds of gears of a machine; axes that no gear suits are not in it."""
+    """Fewest kinds of gears of a machine, without axes that no gear suits."""
 
-    kinds: Annotated[tuple[KindsStep, ...], Field(description="Steps from the machine’s own number of kinds down.")]
-    least: Annotated[int, Field(description="Least number of kinds that serves every axis.")]
+    kinds: Annotated[tuple[KindsStep, ...], Field(description="Steps, from the machine’s own number of kinds down.")]
+    least: Annotated[int, Field(description="Smallest number of kinds that serves every axis.")]
     forced: Annotated[tuple[Forced, ...], Field(description="Gears that an axis needs.")]
 
 
 def kinds_of(sought: Sequence[Sought], catalogue: Catalogue, *, most: int | None = None) -> MachineKinds:
-    """Sets of least weight for each number of kinds, from what the axes have down to the least, at most `most`."""
+    """Lightest sets for each number of kinds, from the present number down to the least, at most `most` kinds."""
     names = [gear.designation for gear in catalogue.gears]
     place = {name: index for index, name in enumerate(names)}
     suits, used = _judged([axis.application for axis in sought], catalogue)
@@ -82,10 +90,11 @@ def kinds_of(sought: Sequence[Sought], catalogue: Catalogue, *, most: int | None
 
 
 def _judged(applications: Sequence[Application], catalogue: Catalogue) -> tuple[BoolArray, FloatArray]:
-    """Which gears of the catalogue suit each application, and their utilisation, shape (A, G); NaN for no candidate."""
+    """True for the suitable gears of each application, and their utilisation, NaN for no candidate; both shape
+    (A, G)."""
     place = {gear.designation: index for index, gear in enumerate(catalogue.gears)}
 
-    def row(judged: Judged) -> tuple[list[int], BoolArray, FloatArray]:
+    def row(judged: Judgement) -> tuple[list[int], BoolArray, FloatArray]:
         evaluation, index = judged.evaluation, judged.index
         columns = [place[gear.designation] for gear in evaluation.gears.rows]
         return columns, evaluation.verdict[index] == SUITABLE, evaluation.utilisation[index].copy()

@@ -1,4 +1,4 @@
-"""Revisions: a document as it was under a label, everything own, inherited and resolved, never changed."""
+"""Revisions: a document under a label with all own, inherited and resolved values; it never changes."""
 
 import re
 from typing import Annotated, Any
@@ -17,20 +17,19 @@ from hpn.words.wording import N_
 
 LABEL = re.compile(r"[A-Za-z0-9._-]{1,20}")
 NOW, TODAY, SAVED = "now", "today", "saved"
-"""The working copy and today's catalogue and engine in a comparison, and the first revision of what was saved before
-there were revisions."""
+"""Names of the working copy and of today's answer in a comparison; label of first revisions of older documents."""
 
 NOT_A_LABEL = N_("must be 1 to 20 letters, digits, dots, hyphens or underscores, such as B or 1.2")
 RESERVED = N_("is reserved: choose another label")
 
 
 def label_key(label: str) -> str:
-    """Form of a label without its case, which makes no difference between labels."""
+    """Label in the form for comparisons, where case makes no difference."""
     return label.casefold()
 
 
 def is_label(text: str) -> bool:
-    """True for a text that can be the label of a revision; dots alone would be lost in an address."""
+    """True for a valid label of a revision; a label of only dots would be lost in an address."""
     return LABEL.fullmatch(text) is not None and text.strip(".") != "" and label_key(text) not in (NOW, TODAY, SAVED)
 
 
@@ -50,13 +49,13 @@ class RevisionBlock(Model):
 
     label: Label = Field(description="Label, unique in the document without regard to case.", examples=["B"])
     author: Title | None = Field(None, description="Author of the revision.", examples=["MA"])
-    checked: Title | None = Field(None, description="Initials of who checked it.", examples=["KR"])
-    approved: Title | None = Field(None, description="Initials of who approved it.", examples=["LB"])
-    note: Note | None = Field(None, description="What is new in it.")
+    checked: Title | None = Field(None, description="Initials of the checker.", examples=["KR"])
+    approved: Title | None = Field(None, description="Initials of the approver.", examples=["LB"])
+    note: Note | None = Field(None, description="Changes in this revision.")
 
 
 class FrozenAxis(Reply, frozen=True):
-    """An axis as it was: its own part as it was sent, what that and the common values resolved to, and the answer."""
+    """An axis as it was: its own part as sent, its application resolved with the common values, and its answer."""
 
     number: int
     name: str | None
@@ -70,12 +69,12 @@ class FrozenAxis(Reply, frozen=True):
 
     @property
     def own(self) -> frozenset[str]:
-        """Paths of its own values."""
+        """Paths of the axis's own values."""
         return frozenset(path for path, _ in flat(msgspec.json.decode(self.application)))
 
     @property
     def inherited(self) -> frozenset[str]:
-        """Paths of the machine’s values in its application."""
+        """Paths of the machine’s values in the axis's application."""
         return frozenset(path for path, _ in flat(msgspec.json.decode(self.resolved))) - self.own
 
 

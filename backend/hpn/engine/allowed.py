@@ -1,4 +1,4 @@
-"""Gears that an application allows and the motor that it names, looked up in the catalogue."""
+"""Gears that an application allows, and its motor, looked up in the catalogue."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -9,17 +9,17 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.words.designations import OTHERS
 from hpn.words.likeness import likeness
 from hpn.words.terms import FOR_OTHERS
-from hpn.words.wording import N_, Sentence, Value, listed
+from hpn.words.wording import N_, Sentence, Value, first_of, listed
 
 NOT_THERE = N_("the catalogue has no {value} (available: {listed})")
 LOOKS_LIKE = N_("the catalogue has no {value}; it looks like {near} (available: {listed})")
 NOT_TOGETHER = N_("there is no gear of this size and ratio (available: {offered})")
 
 MOTORS_NAMED = 20
-"""Motors that an error names."""
+"""Motors, at most, that an error names."""
 
 SIZES_NAMED, SHOWN = 20, 40
-"""Unknown sizes that an error names, and characters of each."""
+"""Unknown sizes, at most, that an error names, and characters of each."""
 
 
 def gears_for(application: Application, catalogue: Catalogue) -> GearList:
@@ -59,7 +59,7 @@ def _require_sizes_of_centres(load: OutputLoad, catalogue: Catalogue) -> None:
 
 
 def _none_such(size: str, there: Sequence[str]) -> Sentence:
-    near = likeness(size, (OTHERS,))  # of sizes, which differ by a digit, each would be as likely
+    near = likeness(size, (OTHERS,))  # not among sizes: they differ by a digit, so each is as likely
     sizes = [*(Sentence("{text}", {"text": each}) for each in there), Sentence(FOR_OTHERS)]
     values: dict[str, Value] = {"value": size[:SHOWN], "listed": listed(sizes)}
     return Sentence(LOOKS_LIKE, {**values, "near": near}, ("near",)) if near else Sentence(NOT_THERE, values)
@@ -87,7 +87,7 @@ def _restricted(catalogue: Catalogue, sizes: tuple[str, ...] | None, ratios: tup
 
 @lru_cache(maxsize=256)
 def gears_left_out(gears: GearList, catalogue: Catalogue) -> GearList:
-    """Gears of the catalogue that are not among some, in its order; maybe none."""
+    """Gears of the catalogue without some of them, in its order; may be empty."""
     allowed = {gear.designation for gear in gears.rows}
     return catalogue.listed(gear for gear in catalogue.gears if gear.designation not in allowed)
 
@@ -106,9 +106,9 @@ def _not_there(sizes: Sequence[str], ratios: Sequence[int], catalogue: Catalogue
 
 
 def with_listed_motor(application: Application, catalogue: Catalogue) -> Application:
-    """The application with the figures of the motor that it names.
+    """The application with the figures of its listed motor.
 
-    Raises InputError for a motor that is not listed, and for one without the inertia that an inertia ratio needs.
+    Raises InputError for an unlisted motor, and for a motor without the inertia that an inertia ratio needs.
     """
     typed = application.requirements.motor
     if typed is None or typed.designation is None:
@@ -121,13 +121,11 @@ def with_listed_motor(application: Application, catalogue: Catalogue) -> Applica
             raise InputError(
                 (place, Sentence(N_("there are no motors: list them in motors.csv of a catalogue supplement")))
             )
-        more = ["…"] if len(names) > MOTORS_NAMED else []
-        values: dict[str, Value] = {"value": typed.designation, "listed": ", ".join(names[:MOTORS_NAMED] + more)}
+        values: dict[str, Value] = {"value": typed.designation, "listed": first_of(names, MOTORS_NAMED)}
         raise InputError((place, Sentence(NOT_THERE, values)))
     if typed.inertia_ratio is not None and listed.inertia_kgm2 is None:
         raise InputError(
             (place, Sentence(N_("inertia_ratio needs the inertia of this motor, which motors.csv does not give")))
         )
     motor = typed.model_copy(update={name: getattr(listed, name) for name in LISTED_FIGURES})
-    requirements = application.requirements.model_copy(update={"motor": motor})
-    return application.model_copy(update={"requirements": requirements})
+    return application.requiring(motor=motor)

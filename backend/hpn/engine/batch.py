@@ -1,4 +1,4 @@
-"""Many applications at once, as a PLM system has them: evaluated in chunks of duty cycles of like length."""
+"""Many applications at once, as from a PLM system, evaluated in chunks of duty cycles of similar length."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
@@ -12,24 +12,24 @@ from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import evaluate
-from hpn.engine.selection import Judged, judge
+from hpn.engine.selection import Judgement, judge
 from hpn.engine.tolerance import with_worst
 
 Answer = TypeVar("Answer")
 
 CHUNK_CYCLES = 1024
 CHUNK_PHASES = 100_000
-"""Cycles and phases of a chunk: its arrays stay in the processor's cache."""
+"""Cycles and phases of a chunk, small enough that its arrays stay in the processor's cache."""
 
 LIKE = 2
-"""Ratio of the longest cycle of a chunk to its shortest, at most; every cycle is padded to the longest."""
+"""Largest ratio of a chunk's longest cycle to its shortest; every cycle is padded to the longest."""
 
 SHORT_CYCLE = 16
-"""Phases up to which a cycle counts as long as this."""
+"""Phases below which a cycle counts as this long."""
 
 
 def chunks_of(counts: ArrayLike) -> Iterator[NDArray[np.intp]]:
-    """Places of cycles in chunks of like length, from their numbers of phases."""
+    """Places of cycles in chunks of similar length, from their numbers of phases."""
     lengths = np.asarray(counts, dtype=np.intp)
     order = np.argsort(lengths, kind="stable")
     ascending = lengths[order]
@@ -44,12 +44,12 @@ def chunks_of(counts: ArrayLike) -> Iterator[NDArray[np.intp]]:
 
 
 def judge_batch(
-    applications: Sequence[Application], catalogue: Catalogue, answer: Callable[[Judged], Answer]
+    applications: Sequence[Application], catalogue: Catalogue, answer: Callable[[Judgement], Answer]
 ) -> list[Answer | InputError]:
-    """Answers to applications, or the errors for which they have none, in their order.
+    """Answers to applications, or the errors that they raise, in the order of the applications.
 
     Applications with the same candidates are evaluated together, in chunks that stay inside the processor's cache.
-    `answer` takes from an evaluation what is needed of it, since no more than one is kept.
+    `answer` extracts the result from an evaluation, which is dropped afterwards: only one is kept at a time.
     """
     results: list[Answer | InputError | None] = [None] * len(applications)
     equipped = list(applications)
@@ -66,16 +66,18 @@ def judge_batch(
             evaluation = evaluate(Duty.of([equipped[index] for index in members]), gears, catalogue)
             try:
                 evaluation = with_worst([applications[index] for index in members], evaluation)
-            except InputError:  # one of them has a corner that is no application: each alone
+            except InputError:  # one of them has an invalid corner: each alone
                 for index in members:
                     results[index] = _alone(applications[index], catalogue, answer)
                 continue
             for place, index in enumerate(members):
-                results[index] = answer(Judged(applications[index], evaluation, place))
+                results[index] = answer(Judgement(applications[index], evaluation, place))
     return [result for result in results if result is not None]
 
 
-def _alone(application: Application, catalogue: Catalogue, answer: Callable[[Judged], Answer]) -> Answer | InputError:
+def _alone(
+    application: Application, catalogue: Catalogue, answer: Callable[[Judgement], Answer]
+) -> Answer | InputError:
     try:
         return answer(judge(application, catalogue))
     except InputError as error:

@@ -1,4 +1,4 @@
-"""Candidates: the gears as the reply has them, each with its figures, its checks and a reason."""
+"""Candidates: the gears of a reply, each with its figures, its checks and a reason."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice, repeat
@@ -45,7 +45,8 @@ class CheckResult(Reply, frozen=True):
         Annotated[float | None, Field(description="Utilisation in the worst case of the tolerances.")] | UnsetType
     ) = UNSET
     exact: (
-        Annotated[bool, Field(description="True: nothing inside the tolerances is worse. False: sampled.")] | UnsetType
+        Annotated[bool, Field(description="True: proved, nothing inside the tolerances is worse. False: sampled.")]
+        | UnsetType
     ) = UNSET
 
 
@@ -53,7 +54,7 @@ class WorstCase(Reply, frozen=True):
     """Verdict on one gear in the worst case of the tolerances."""
 
     utilisation: Annotated[float | None, Field(description="Largest utilisation that counts.")]
-    governing_check: Annotated[str | None, Field(description="Check that has it.")]
+    governing_check: Annotated[str | None, Field(description="Check with that utilisation.")]
     status: Annotated[Status, Field(description="Status by the worst cases of all checks.")]
 
 
@@ -96,6 +97,8 @@ class Candidate(Reply, frozen=True):
     shortest_life_of: LifeOf | None = None
     motor_peak_torque_Nm: float | None = None
     motor_rated_torque_Nm: float | None = None
+    motor_thermal_torque_Nm: float | None = None
+    motor_mean_speed_torque_Nm: float | None = None
     motor_torque_limit_Nm: float | None = None
     natural_frequency_Hz: float | None = None
     drive_resonance_Hz: float | None = None
@@ -115,11 +118,11 @@ class Candidate(Reply, frozen=True):
     worst: Annotated[WorstCase, Field(description="Worst case of the tolerances, if given.")] | UnsetType = UNSET
 
     def says(self, figure: str) -> bool:
-        """False for a figure that the version of a saved answer did not know; None is then no value of it."""
+        """False for a figure unknown to the version of a saved answer; None then means unknown instead of no value."""
         return True
 
     def check(self, code: str) -> CheckResult | None:
-        """The check of a code, or None where it was not asked for."""
+        """The check of a code, or None if it was not asked for."""
         return next((check for check in self.checks if check.code == code), None)
 
     @property
@@ -129,25 +132,25 @@ class Candidate(Reply, frozen=True):
 
     @property
     def lacks_lever(self) -> bool:
-        """True where the lever of the load on its bearing is not known: checks of it are lower bounds, if they fail."""
+        """True where the lever of the bearing's load is unknown: failing checks of the bearing are lower bounds."""
         life = self.check("output_bearing_life")
         unknown = self.bearing_life_L50_h is None and self.says("bearing_life_L50_h")
         return unknown and life is not None and life.status != "pass"
 
     @property
     def is_lower_bound(self) -> bool:
-        """True where its utilisation is that of a bearing load whose lever is not known: it fails already without."""
+        """True where its utilisation is that of a bearing load with an unknown lever, which fails even without one."""
         return self.lacks_lever and self.governing_check in BEARING_CHECKS
 
     @property
     def is_judged(self) -> bool:
-        """True where every check could be judged; an unsuitable candidate may still have one that could not."""
+        """True where every check is rated; an unsuitable candidate may still have an unrated check."""
         return all(check.status != "not_rated" for check in self.checks) and not self.lacks_lever
 
     def is_unlimited(self, figure: str) -> bool:
-        """True where a figure is empty because nothing limits it, not for want of an input or of a rating.
+        """True where a figure is empty because nothing limits it, rather than for want of an input or a rating.
 
-        The candidate's status does not say: a gear that fails a check is unsuitable, rated or not.
+        The candidate's status does not tell: a gear that fails a check is unsuitable, rated or not.
         """
         unlimited_by, rated = (self.check(code) for code in _UNLIMITED_BY.get(figure, ("", "")))
         known = rated is not None and rated.status != "not_rated"
@@ -160,14 +163,15 @@ _UNLIMITED_BY = {
     "bearing_life_L50_h": ("output_bearing_life", "output_bearing_life"),
     "bearing_life_L10_h": ("output_bearing_life", "output_bearing_life"),
 }
-"""Figures that may be unlimited: the check that is present where they are asked for, and the check that is rated where
-the gear has the figure behind them."""
+"""Figures that may be unlimited: the check that is present if they are asked for, and the check that is rated if the
+gear has the figure behind them.
+"""
 
 BEARING_CHECKS = ("output_bearing_load", "output_bearing_life")
-"""Checks of the output bearing, which no closed form follows where a pinion or pulley loads the shaft."""
+"""Checks of the output bearing, without a closed form where a pinion or pulley loads the shaft."""
 
 MISSING = ("output_load.shaft_centre_mm",)
-"""Inputs that a gear may lack: the bearing's, where loads act off the shaft's centre."""
+"""Inputs that a gear may lack: for the bearing, where loads act off the shaft's centre."""
 
 FIGURES = tuple(
     field.name for field in msgspec.structs.fields(Candidate) if field.type == float | None and not field.required
@@ -177,11 +181,11 @@ FIGURES = tuple(
 
 def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     """Candidates of an application, best first."""
-    order, places = evaluation.order[index], evaluation.asked_by(index)
+    order, places = evaluation.order[index], evaluation.places_of(index)
     codes = [check.code for check in evaluation.checks]
-    u = evaluation.case.asked["requirements.utilisation"].item(index)
+    u = evaluation.case.inputs["requirements.utilisation"].item(index)
     figures = (getattr(evaluation.case.figures, name)[index] for name in FIGURES)
-    tables = (evaluation.demand, evaluation.limit, evaluation.shown)
+    tables = (evaluation.demand, evaluation.limit, evaluation.nominal)
     terms = (table[place, index] for place in places for table in tables)
     columns = iter(
         _columns([evaluation.utilisation[index], *figures, *reserves(evaluation, index).values(), *terms], order)
@@ -191,7 +195,7 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
     states = [map(CHECK_STATUS.__getitem__, row) for row in evaluation.status[places, index][:, order].tolist()]
     lacks, bounded = evaluation.lacks_input[index].tolist(), bool(np.isfinite(evaluation.at_least[:, index]).any())
     limits = np.select([lacks, evaluation.by_lower_bound[index]], ["missing", "at_least"], "").tolist()
-    worst = evaluation.worst if evaluation.worst is not None and evaluation.worst.given[index] else None
+    worst = evaluation.worst if evaluation.worst is not None and evaluation.worst.has_tolerances[index] else None
     checks = [
         map(
             CheckResult,
@@ -236,7 +240,7 @@ def candidates_of(evaluation: Evaluation, index: int) -> Iterator[Candidate]:
 
 
 def _worst_of(worst: Worst, place: int, index: int, order: PlaceArray) -> tuple[list[float | None], list[bool]]:
-    """Worst utilisation of a check on the gears in an order, and whether it is proved."""
+    """Worst utilisation of a check on the gears in an order, and True where it is proved."""
     return _columns([worst.evaluation.used[place, index]], order)[0], worst.exact[place, index, order].tolist()
 
 
@@ -252,7 +256,7 @@ def _worst_cases(worst: Worst, index: int, order: PlaceArray) -> list[WorstCase]
 
 
 def _columns(values: Sequence[FloatArray], order: PlaceArray) -> list[list[float | None]]:
-    """Values of the gears in an order, a list for each; None where one is not finite."""
+    """Values of the gears in an order, a list for each; None for a value that is not finite."""
     table = np.empty((len(values), len(order)))
     for place, column in enumerate(values):
         table[place] = column
@@ -295,9 +299,9 @@ def reason_of(candidate: Candidate, utilisation: float) -> Sentence:
 
 
 def _reason(size: str, status: Status, used: float | None, code: str | None, failed: int, u: float, limits: str) -> str:
-    """The same sentence in English, as the API gives it, its number with every digit.
+    """Reason in English, as the API gives it, its number with every digit.
 
-    `limits` is `missing` for a gear that lacks an input, `at_least` for one that a lower bound governs.
+    `limits` is `missing` for a gear that lacks an input, `at_least` for one whose governing check is a lower bound.
     """
     if used is None or code is None:
         return REASONS[_key_without_number(status, code, lacks=limits == "missing")].format(name=f"HPN-{size}")
@@ -317,6 +321,6 @@ def _key(status: Status, failed: int) -> str:
 
 
 def _told_percent(used: float, code: str, u: float) -> float:
-    """Utilisation in percent, with enough decimals to tell it from the allowed one."""
+    """Utilisation in percent, with enough decimals to differ from the allowed one."""
     percent = 100 * used
     return round(percent, telling_decimals(percent, 100 * allowed(code, u), 1))

@@ -1,4 +1,4 @@
-"""Distance of the shaft's centre that each size needs where it is asked for and not known."""
+"""Distance of the shaft's centre that each size needs where loads ask for it and it is unknown."""
 
 from dataclasses import dataclass
 
@@ -11,18 +11,18 @@ from hpn.physics import bearing
 from hpn.physics.equations import ROUNDING, FloatArray
 
 SHORTEST_MM, LONGEST_MM = 1e-3, 1e6
-"""Distances between which one is looked for, far beyond any shaft on both sides."""
+"""Ends of the search in mm, far beyond any shaft on both sides."""
 
 STEPS = 60
-"""Halvings of that range on a logarithmic scale: more than the digits of a number."""
+"""Halvings of this range on a logarithmic scale: enough for every digit of a float."""
 
 
 @dataclass(frozen=True, slots=True)
 class NeededCentre:
-    """Distances x_c in mm of one size: the known one, and the shortest with which its bearing carries the loads.
+    """Distances x_c in mm for one size: the known one, and the shortest at which its bearing carries the loads.
 
     `needed_mm` is None where no distance is enough, and `is_rated` is False where the size has no bearing limits.
-    `largest_N` is the largest radial load of a phase, as if it acted at the shaft's centre.
+    `largest_N` is the largest radial load of a phase if it acted at the shaft's centre.
     """
 
     size: str
@@ -33,7 +33,7 @@ class NeededCentre:
 
 
 def needed_centres(figures: Figures) -> list[NeededCentre]:
-    """Needed distance of every size, for one application; `figures` are those of the first gear of each."""
+    """Needed distance for every size under one application; `figures` are those of the first gear of each size."""
     duty, gears = figures.duty, figures.gears
     known = shaft_centre_mm(duty, gears)[0]
     shortest, longest = (np.full((1, len(known)), end) for end in (SHORTEST_MM, LONGEST_MM))
@@ -56,8 +56,8 @@ def _number(value: FloatArray) -> float | None:
 
 
 def _carries(figures: Figures, centre_mm: FloatArray) -> FloatArray:
-    """True where the bearing of a size passes its checks with the shaft's centre at a distance; shape (1, sizes)."""
-    duty, u = figures.duty, figures.duty.asked["requirements.utilisation"]
+    """True where a size's bearing passes its checks with the shaft's centre at a distance; shape (1, sizes)."""
+    duty, u = figures.duty, figures.duty.inputs["requirements.utilisation"]
     loads, phases = _loads(duty, figures.gears, centre_mm), duty.phases
     mean = bearing.mean_equivalent_load(equivalent_load=loads, speed_rpm=phases.speed_rpm, duration_s=phases.duration_s)
     most = u * (1 + ROUNDING)
@@ -66,8 +66,8 @@ def _carries(figures: Figures, centre_mm: FloatArray) -> FloatArray:
 
 
 def _loads(duty: Duty, gears: GearList, centre_mm: FloatArray) -> FloatArray:
-    """f_w P of every phase on every size with the shaft's centre at a distance, shape (1, sizes, phases)."""
-    inputs, phases = duty.asked, duty.phases
+    """Load f_w P of every phase on every size with the shaft's centre at a distance, shape (1, sizes, phases)."""
+    inputs, phases = duty.inputs, duty.phases
     y = inputs["output_load.axial_radius_mm"]
     radial = bearing.radial_load_at_centre(
         radial_N=phases.radial_N,

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hpn.catalogue import GearColumns
-from hpn.engine.duty import Duty, InputArrays
+from hpn.engine.duty import Duty
 from hpn.engine.figures import Figures
+from hpn.engine.input_arrays import InputArrays
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
 
@@ -18,7 +19,7 @@ Group = Literal["load", "property"]
 Driver = Literal["torque", "speed", "load"]
 
 DRIVERS: tuple[Driver, ...] = ("torque", "speed", "load")
-"""Quantities that utilisations are powers of: all torques of the duty cycle, all speeds, all loads on the output."""
+"""Drivers: utilisations are powers of all torques of the duty cycle, of all speeds, and of all loads on the output."""
 
 
 RATING_TABLES = N_("rating tables 10.1 to 12.2")
@@ -34,34 +35,36 @@ class Case:
     figures: Figures
 
     @property
-    def asked(self) -> InputArrays:
+    def inputs(self) -> InputArrays:
         """Inputs besides the phases."""
-        return self.duty.asked
+        return self.duty.inputs
 
 
 Values = Callable[[Case], FloatArray]
 
 Dependence = Literal["rising", "falling", "ends", "weight", "unproven"]
-"""How a utilisation depends on one input while the others stay: it rises or falls with it, or is largest at one of its
-ends; `weight`: the input is a factor of the weights w of a share Σ w d / (Σ w + c); unproven: in no such way."""
+"""Dependence of a utilisation on one input, the others fixed. It rises or falls with the input, or is largest at one of
+its ends; `weight`: the input is a factor of the weights w of a share Σ w d / (Σ w + c); unproven: none of these.
+"""
 
 
 @dataclass(frozen=True)
 class Check:
-    """One check. Its texts are English msgids; `name` is how it stands inside a sentence.
+    """One check. Its texts are English msgids; `name` is its name inside a sentence.
 
-    `asked` is the input whose presence asks for it, blank for a check that is always made; `instead` is another input
-    that asks for it as well. Without a `limit` that input is the limit. Utilisation is demand over limit, limit over
-    demand for a minimum, or what `share` gives. `at_least` is a lower bound of it where
-    an input is missing, NaN elsewhere. `limited_by` is the catalogue figure behind the limit, None where that
-    is the user's own. `relation` is the check in the handbook's symbols. `moves` gives the power with which the
-    utilisation grows with each driver; `accepted` says which {value} of the input `asked` lets it pass where none of
-    them moves it, or none in closed form.
+    A check applies where the input `asked` is present (always if that is blank), or the input `instead`, but never
+    beside the input `unless`. Without a `limit` the input `asked` is the limit. Utilisation is demand over limit, for a
+    minimum limit over demand, or the result of `share`. `at_least` is a lower bound of it where an input is missing,
+    NaN elsewhere. `limited_by` is the catalogue figure behind the limit, None for the user's own limit. `relation` is
+    the check in the handbook's symbols. `moves` gives the power with which the utilisation grows with each driver.
+    `accepted` names the {value} of the input `asked` at which the check passes, for checks that no driver moves, or
+    none in closed form.
 
-    `over` says of each input that the utilisation depends on how it does, an input by its path, of a phase by its
-    field, and of a motion with fixed times and speeds by `motion`; None: nothing is proven of it. Where inputs are
-    weights, `weighted` gives the d of each phase, shape (N, groups of gears, phases), and c is the pause where the
-    utilisation depends on it. `proven` is False where that doesn't hold, broadcasting to (N, G).
+    `over` gives the dependence of the utilisation on each of its inputs: an input by its path, of a phase by its field,
+    and of a motion with fixed times and speeds by `motion`; with None nothing is proven. Where inputs are weights,
+    `weighted` gives the d of each phase, shape (N, groups of gears, phases), and c is the pause if the utilisation
+    depends on the pause. `proven` is False where this dependence doesn't hold, broadcasting to (N, G). Beside the input
+    `sampled_beside` nothing is proven.
     """
 
     code: str
@@ -78,8 +81,10 @@ class Check:
     remedy: str
     demand: Values
     relation: str
-    asked: str = ""
+    trigger: str = ""
     instead: str = ""
+    unless: str = ""
+    sampled_beside: str = ""
     limit: Values | None = None
     share: Values | None = None
     at_least: Values | None = None
@@ -92,16 +97,21 @@ class Check:
     proven: Callable[[Case], NDArray[np.bool_]] | None = None
 
     def limit_of(self, case: Case) -> FloatArray:
-        """Limit in the unit of the check; broadcasts to (N, G), NaN where it is not published or not asked."""
-        return self.limit(case) if self.limit else case.asked[self.asked]
+        """Limit in the unit of the check; broadcasts to (N, G), NaN if not published or not asked for."""
+        return self.limit(case) if self.limit else case.inputs[self.trigger]
 
     def utilisation(self, case: Case) -> FloatArray:
-        """Share of the limit that is used, [-]; broadcasts to (N, G), infinite where a check fails without a number."""
+        """Used share of the limit; broadcasts to (N, G), infinite where a check fails without a number. [-]
+
+        NaN beside the input `unless`.
+        """
         if self.share is not None:
             return self.share(case)
         demand, limit = self.demand(case), self.limit_of(case)
+        if self.unless:
+            limit = np.where(np.isnan(case.inputs[self.unless]), limit, np.nan)
         return limit / demand if self.kind == "minimum" else demand / limit
 
     def allowed(self, utilisation: float) -> float:
-        """Largest utilisation with which it passes: the user's own u for a load check, 1 for a property check."""
+        """Largest utilisation at which it passes: the user's own u for a load check, 1 for a property check."""
         return utilisation if self.group == "load" else 1.0

@@ -1,20 +1,22 @@
-"""Corners of a box of tolerances at which each check has its worst case, by what the check declares of its inputs.
+"""Corners of a box of tolerances with the worst case of each check, from the dependences that the check declares.
 
-A check takes one point, or two where an input counts at both of its ends. Where inputs are weights of a share
-Σ w d / (Σ w + c), the largest share gives its high weights to the largest d: sorting finds it, one point for each
-order that the gears have.
+A check takes one point, or two where an input counts at both of its ends. Where inputs are weights of a share Σ w d /
+(Σ w + c), the largest share gives its high weights to the largest d: sorting finds it, one point for each order that
+the gears have.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hpn.catalogue import Catalogue, GearList
-from hpn.engine.box import Box, duty_of
-from hpn.engine.check import Case, Check
+from hpn.engine.box import Box, MovedInputs, duty_of, find_extremes
+from hpn.engine.check import Case, Check, Dependence
 from hpn.engine.figures import Figures
 from hpn.physics.equations import FloatArray
 
@@ -22,16 +24,16 @@ BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.intp]
 
 MOST_ENDS = 4
-"""Inputs of one check of which both ends are looked at."""
+"""Inputs of one check, at most, whose both ends are evaluated."""
 
 PAUSE = "duty_cycle.pause_s"
 
 
 @dataclass(eq=False)
 class Need:
-    """Points of a box that give a check its worst case; `is_exact` is False where no proof says so.
+    """Points of a box with the worst case of a check; `is_exact` is False without a proof.
 
-    `is_moved` is False where no interval has an influence on the check.
+    `is_moved` is False if no interval influences the check.
     """
 
     check: Check
@@ -43,6 +45,7 @@ class Need:
 
 def needs_of(boxes: Sequence[Box], checks: Sequence[Check], gears: GearList, catalogue: Catalogue) -> list[list[Need]]:
     """Points of the checks in each box."""
+    find_extremes(boxes)
     needs_by_box = [[need_of(box, check) for check in checks] for box in boxes]
     sharing = [(box, need) for box, needs in zip(boxes, needs_by_box, strict=True) for need in needs if need.weights]
     if not sharing:
@@ -58,64 +61,82 @@ def needs_of(boxes: Sequence[Box], checks: Sequence[Check], gears: GearList, cat
     return needs_by_box
 
 
+class _Sense(NamedTuple):
+    """Ends of a box at which a check is worst, by its declaration.
+
+    `way` (intervals,) is 1 for the upper end, -1 for the lower one and 0 for the value; `both` are places to evaluate
+    at both ends.
+    """
+
+    way: NDArray[np.int8]
+    both: list[int]
+    weights: list[str]
+    is_exact: bool
+    is_moved: bool
+
+
 def need_of(box: Box, check: Check) -> Need:
-    """Points of a check, its weights left where they are given."""
-    point, is_exact, is_moved = box.value.copy(), check.over is not None, check.over is None
+    """Points of a check, its weights at their given values."""
+    sense = _sense_of(box.moved, None if check.over is None else tuple(check.over.items()))
+    points = np.where(sense.way > 0, box.high, np.where(sense.way < 0, box.low, box.value))[None]
+    if both := sense.both:
+        choices = np.array(list(product((0, 1), repeat=len(both))))
+        points = np.repeat(points, len(choices), axis=0)
+        points[:, both] = np.where(choices, box.high[both], box.low[both])
+    is_open = bool(check.sampled_beside) and not np.isnan(box.duty.inputs[check.sampled_beside]).all()
+    return Need(check, points, sense.is_exact and not is_open, sense.is_moved or is_open, sense.weights)
+
+
+@lru_cache(maxsize=1024)
+def _sense_of(moved: MovedInputs, over: tuple[tuple[str, Dependence], ...] | None) -> _Sense:
+    """Sense of a declaration in boxes whose intervals influence the same inputs in the same direction."""
+    is_exact, is_moved = over is not None, over is None
     both: list[int] = []
     weights: list[str] = []
-    set_high = np.zeros(len(point), np.int8)
-    alike = np.zeros(len(point), np.bool_)
-    for name, dependence in (check.over or {}).items():
-        ends = box.ends.get(name)
-        if ends is None or not len(ends.of):
+    set_high, alike = np.zeros(moved.count, np.int8), np.zeros(moved.count, np.bool_)
+    for name, dependence in over or ():
+        if name not in moved.places:
             continue
+        of, rising = (np.array(values) for values in moved.places[name])
         is_moved = True
         if dependence == "unproven":
             is_exact = False
         elif dependence == "weight":
             weights.append(name)
         elif dependence == "ends":
-            both += ends.of.tolist()
+            both += of.tolist()
         else:
-            equal = ends.at_high == ends.at_low
-            rises = (ends.at_high >= ends.at_low) == (dependence == "rising")
-            way = np.where(equal, set_high[ends.of], np.where(rises, 1, -1)).astype(np.int8)
-            alike[ends.of[equal]] = True
-            if (set_high[ends.of] * way < 0).any():
-                is_exact = False  # two figures of a phase whose worst lies at different ends
-            set_high[ends.of] = way
-    set_high[alike & (set_high == 0)] = 1  # magnitudes at both ends are alike, and less between them
-    point = np.where(set_high > 0, box.high, np.where(set_high < 0, box.low, point))
-    points = point[None]
-    if both and len(both) <= MOST_ENDS:
-        choices = np.array(list(product((0, 1), repeat=len(both))))
-        points = np.repeat(points, len(choices), axis=0)
-        points[:, both] = np.where(choices, box.high[both], box.low[both])
-    return Need(check, points, is_exact and len(both) <= MOST_ENDS, is_moved, weights)
+            alike[of[rising == 0]] = True
+            way = np.where(rising == 0, set_high[of], rising if dependence == "rising" else -rising)
+            if (set_high[of] * way < 0).any():
+                is_exact = False  # two figures of a phase are worst at different ends
+            set_high[of] = way
+    set_high[alike & (set_high == 0)] = 1  # equal magnitudes at both ends, smaller ones between them
+    few = len(both) <= MOST_ENDS
+    return _Sense(set_high, both if few else [], weights, is_exact and few, is_moved)
 
 
 def _with_weights(box: Box, need: Need) -> FloatArray:
     """The point of a need with its weights at their low ends, and at their high ends."""
     points = np.repeat(need.points[:1], 2, axis=0)
     for name in need.weights:
-        of, at_low, at_high = box.ends[name]
-        rises = at_high >= at_low
+        of, rises = box.ends[name].of, box.ends[name].rising >= 0
         points[0, of] = np.where(rises, box.low[of], box.high[of])
         points[1, of] = np.where(rises, box.high[of], box.low[of])
     return points
 
 
 def _raised(check: Check, case: Case, rows: IntArray) -> list[BoolArray]:
-    """Phases whose weights are high at the largest share, shape (groups of gears, phases), of each pair of rows.
+    """Phases whose weights are high at the largest share, shape (groups of gears, phases), for each pair of rows.
 
-    The share is largest where the weights of all d above it are high and those of all below it low.
+    The share is largest where the weights of all d above it are high and those of all d below it low.
     """
     assert check.weighted is not None
     over = check.over or {}
     names = [name for name, dependence in over.items() if dependence == "weight"]
     weights = np.prod([getattr(case.duty.phases, name)[:, 0] for name in names], axis=0)
     low, high = weights[rows, None], weights[rows + 1, None]
-    c = case.asked[PAUSE][rows, None] if PAUSE in over else np.zeros((1, 1, 1))
+    c = case.inputs[PAUSE][rows, None] if PAUSE in over else np.zeros((1, 1, 1))
     with np.errstate(all="ignore"):
         d = check.weighted(case)[rows]
         order = np.argsort(-d, axis=-1, kind="stable")

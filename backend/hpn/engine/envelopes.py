@@ -1,4 +1,4 @@
-"""Load envelopes of a size's output bearing, as a user asks for them: at a speed, a life and load coefficients."""
+"""Load envelopes of a size's output bearing for a requested speed, life and load coefficient."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -16,7 +16,7 @@ from hpn.words.wording import Sentence
 
 
 class EnvelopeQuery(Model):
-    """Condition of the life envelopes; as a query gives it, so numbers come as text."""
+    """Condition of the life envelopes, from a query, so that numbers come as text."""
 
     speed_rpm: Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)] = Field(
         100.0, description="Average output speed, pause included."
@@ -25,9 +25,9 @@ class EnvelopeQuery(Model):
         20_000.0, description="Required life of the output bearing as L50."
     )
     load_coefficient: Annotated[float, Field(ge=1, le=3, allow_inf_nan=False)] = Field(
-        1.0, description="Load coefficient f_w, beside the printed 1, 1.2, 1.5."
+        1.0, description="Load coefficient f_w of a further curve, beside the printed 1, 1.2 and 1.5."
     )
-    model: BearingModel = Field("linear", description="How the envelope runs between the two published limits.")
+    model: BearingModel = Field("linear", description="Model of the envelope between the two published limits.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +44,8 @@ class EnvelopeCurve:
 def life_envelopes(catalogue: Catalogue, gear: Gear, query: EnvelopeQuery) -> list[EnvelopeCurve]:
     """Envelopes of a constant load at the query's speed and life, for f_w = 1, 1.2, 1.5 and the query's own.
 
-    The published envelope times min(1, k) / f_w: slower running never enlarges it. Raises InputError where the size
-    has no published limits, or no curve points for the digitised model.
+    The published envelope times min(1, k) / f_w: slower running never enlarges it. Raises InputError for a size without
+    published limits, or without curve points for the digitised model.
     """
     speed, life = catalogue.bearing_reference
     k = bearing.life_factor(
@@ -97,7 +97,7 @@ def envelope_curve(
         raise InputError((("size",), unpublished))
     radial, axial = bearing.envelope(
         model=model,
-        radial_limit_N=radial_limit or 0.0,  # of no account along supplied points
+        radial_limit_N=radial_limit or 0.0,  # without effect along supplied points
         axial_limit_N=axial_limit or 0.0,
         curve=curve,
         factor=factor / load_coefficient,

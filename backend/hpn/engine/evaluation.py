@@ -1,4 +1,4 @@
-"""Checks of applications on gears, the verdicts that follow from them, and the order of the candidates."""
+"""Checks of applications on gears, the resulting verdicts, and the order of the candidates."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -37,14 +37,14 @@ RANKED_BY: Mapping[RankBy, Callable[[Case, FloatArray], FloatArray]] = {
     "natural_frequency": lambda case, used: -case.figures.natural_frequency_Hz,
     "position_error": lambda case, used: case.figures.position_error_arcmin,
 }
-"""Keys by which suitable gears are ordered, ascending; `used` is their utilisation."""
+"""Keys for the order of suitable gears, ascending; `used` is their utilisation."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """N applications on G gears, by the C checks that one of them asks for.
+    """N applications on G gears, by the C checks that at least one of them asks for.
 
-    `asked` (C, N, 1). `used` (C, N, G) is the utilisation of each check, NaN where it is not rated or not asked for,
+    `applies` (C, N, 1). `used` (C, N, G) is the utilisation of each check, NaN where it is not rated or not asked for,
     infinite where the check fails without a number; it passes up to `bound` (C, N, 1). `verdict` (N, G) is a place in
     STATUS; `utilisation` (N, G) the largest of the load checks and of the property checks that fail, NaN for an unrated
     gear. `worst` are the worst cases where an application has tolerances.
@@ -54,7 +54,7 @@ class Evaluation:
     gears: GearList
     catalogue: Catalogue
     checks: tuple[Check, ...]
-    asked: BoolArray
+    applies: BoolArray
     used: FloatArray
     bound: FloatArray
     verdict: NDArray[np.int8]
@@ -62,13 +62,13 @@ class Evaluation:
     worst: "Worst | None" = None
 
     @property
-    def shown(self) -> FloatArray:
-        """Utilisations of the applications as they are given, shape (C, N, G), whatever judges the gears."""
+    def nominal(self) -> FloatArray:
+        """Utilisations of the applications as given, shape (C, N, G), even if worst cases judge the gears."""
         return self.used if self.worst is None else self.worst.nominal
 
-    def asked_by(self, index: int) -> list[int]:
-        """Places in `checks` of those that application `index` asks for."""
-        places: list[int] = np.flatnonzero(self.asked[:, index, 0]).tolist()
+    def places_of(self, index: int) -> list[int]:
+        """Places in `checks` of the checks of application `index`."""
+        places: list[int] = np.flatnonzero(self.applies[:, index, 0]).tolist()
         return places
 
     @cached_property
@@ -78,7 +78,7 @@ class Evaluation:
 
     @cached_property
     def limit(self) -> FloatArray:
-        """Bounds of these values, shape (C, N, G)."""
+        """Limits of these values, shape (C, N, G)."""
         return self._table(check.limit_of for check in self.checks)
 
     def _table(self, columns: Iterable[Values]) -> FloatArray:
@@ -96,7 +96,7 @@ class Evaluation:
 
     @cached_property
     def at_least(self) -> FloatArray:
-        """Lower bounds of utilisations that are not rated for want of an input, NaN elsewhere; shape (C, N, G)."""
+        """Lower bounds of utilisations that lack an input, NaN elsewhere; shape (C, N, G)."""
         table = np.full(self.used.shape, np.nan)
         with np.errstate(all="ignore"):
             for place, check in enumerate(self.checks):
@@ -106,17 +106,17 @@ class Evaluation:
 
     @cached_property
     def lacks_input(self) -> BoolArray:
-        """True for an unrated gear that inputs would rate: a lower bound stands for whatever is not rated, (N, G)."""
+        """True for an unrated gear that only lacks inputs: everything unrated has a lower bound, shape (N, G)."""
         if not any(check.at_least for check in self.checks):
             return np.zeros(self.verdict.shape, np.bool_)
-        unknown = np.isnan(self.used) & self.asked & np.isnan(self.at_least)
+        unknown = np.isnan(self.used) & self.applies & np.isnan(self.at_least)
         return np.array((self.verdict == UNRATED) & ~unknown.any(axis=0))
 
     @cached_property
     def is_judged(self) -> BoolArray:
-        """True where every check that is asked for is rated, and none by a lower bound alone, shape (N, G)."""
+        """True where every requested check is rated, and none by a lower bound only, shape (N, G)."""
         bounded = np.isfinite(self.case.figures.bearing_loads_at_least[0])
-        return np.array(~(self.asked & np.isnan(self.used)).any(axis=0) & ~bounded)
+        return np.array(~(self.applies & np.isnan(self.used)).any(axis=0) & ~bounded)
 
     @cached_property
     def by_lower_bound(self) -> BoolArray:
@@ -127,11 +127,13 @@ class Evaluation:
 
     @cached_property
     def governing(self) -> PlaceArray:
-        """Place in `checks` of the first check that reaches a gear's utilisation within ROUNDING, shape (N, G)."""
+        """Place in `checks` of the governing check, the first to reach the gear's utilisation within ROUNDING, shape
+        (N, G).
+        """
         return self._first_that_reaches(self.utilisation, self.used, self.bound)
 
     def governing_of(self, gears: PlaceArray) -> PlaceArray:
-        """The same for one gear of each application, by its place, shape (N,)."""
+        """Place in `checks` of the governing check for one gear of each application, given by its place, shape (N,)."""
         rows = np.arange(len(gears))
         return self._first_that_reaches(self.utilisation[rows, gears], self.used[:, rows, gears], self.bound[..., 0])
 
@@ -146,9 +148,9 @@ class Evaluation:
     def order(self) -> PlaceArray:
         """Places of the gears from best to last, shape (N, G).
 
-        Suitable gears come first by `rank_by`, then those that lack an input alone by what is judged of them, then
+        Suitable gears come first by `rank_by`, then gears that only lack an input by their known utilisations, then
         unsuitable ones by ascending utilisation, then the other unrated ones in the order of the catalogue. Ties fall
-        to weight, utilisation, life and ratio, last to the order of the catalogue; what is not published comes last.
+        to weight, utilisation, life and ratio, last to the order of the catalogue; unpublished figures come last.
         """
         keys = np.empty((5, *self.verdict.shape))
         weight, used, life, ratio = self._ties
@@ -165,10 +167,10 @@ class Evaluation:
         return np.lexsort((ratio, life, used, weight, wish, group), axis=-1)  # the last key decides first
 
     def foremost(self, among: BoolArray) -> PlaceArray:
-        """Place of the first gear by that order out of some of the suitable ones (N, G); any where there is none.
+        """Place of the first gear in this order among some suitable ones (N, G); arbitrary without a suitable one.
 
-        A minimum over one key after the other, where what is not published is greater than every number: sorting takes
-        ten times as long. NumPy finds the place of a minimum in a fifth of the time of its value.
+        A minimum over one key after the other, with unpublished figures as the greatest: sorting takes ten times as
+        long. NumPy finds the place of a minimum in a fifth of the time of its value.
         """
         left, decided = among, np.count_nonzero(among.any(axis=-1))
         for key in {id(key): key for key in (self._wish, *self._ties)}.values():
@@ -177,13 +179,13 @@ class Evaluation:
             values = np.where(left & ~np.isnan(key), key, np.inf)
             least = np.take_along_axis(values, values.argmin(axis=-1, keepdims=True), -1)
             left = left & (values <= least * (1 + np.copysign(ROUNDING, least)))
-        places: PlaceArray = left.argmax(axis=-1)  # of a tie in all of them the first in the catalogue
+        places: PlaceArray = left.argmax(axis=-1)  # the first in the catalogue if all keys tie
         return places
 
     @cached_property
     def _wish(self) -> FloatArray:
-        """Key by which suitable gears are ordered, ascending."""
-        rank_by = self.case.asked.rank_by
+        """Key for the order of suitable gears, ascending."""
+        rank_by = self.case.inputs.rank_by
         wishes = {name: RANKED_BY[name](self.case, self.utilisation) for name in RANKED_BY if (rank_by == name).any()}
         if len(wishes) == 1:
             return next(iter(wishes.values()))
@@ -199,20 +201,20 @@ class Evaluation:
 class Worst:
     """Worst cases of N applications over their tolerances, in the form of an evaluation.
 
-    `exact` (C, N, G) says of which checks they are proved, `given` (N,) which applications have tolerances; the others
-    stay as they are. `nominal` (C, N, G) are the utilisations as given.
+    `exact` (C, N, G) is True for proved checks, `has_tolerances` (N,) for applications with tolerances; the others stay
+    as they are. `nominal` (C, N, G) are the utilisations of the values as typed.
     """
 
     evaluation: Evaluation
     exact: BoolArray
-    given: BoolArray
+    has_tolerances: BoolArray
     nominal: FloatArray
 
 
 def judged_by(evaluation: Evaluation, used: FloatArray, bound: FloatArray) -> Evaluation:
-    """The evaluation with other utilisations of its checks, and the bounds that they keep."""
+    """The evaluation with other utilisations and bounds of its checks."""
     with np.errstate(all="ignore"):
-        verdict, utilisation = _verdicts(evaluation.asked, used, bound, _load_checks(evaluation.checks))
+        verdict, utilisation = _verdicts(evaluation.applies, used, bound, _load_checks(evaluation.checks))
     return replace(evaluation, used=used, bound=bound, verdict=verdict, utilisation=utilisation)
 
 
@@ -223,7 +225,7 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
     used = np.empty((*mask.shape[:2], len(gears.rows)))
     bound = np.ones((*mask.shape[:2], 1))
     loads = _load_checks(checks)
-    bound[:loads] = case.asked["requirements.utilisation"]
+    bound[:loads] = case.inputs["requirements.utilisation"]
     bound *= 1 + ROUNDING
     with np.errstate(all="ignore"):  # NaN and infinity are answers
         for place, check in enumerate(checks):
@@ -233,24 +235,26 @@ def evaluate(duty: Duty, gears: GearList, catalogue: Catalogue) -> Evaluation:
 
 
 def _load_checks(checks: Iterable[Check]) -> int:
-    """Number of load checks, which stand in front of the property checks."""
+    """Number of load checks, which precede the property checks."""
     return sum(check.group == "load" for check in checks)
 
 
 def _checks_of(case: Case) -> tuple[tuple[Check, ...], BoolArray]:
-    """Checks that some application asks for, and a mask of those that do, shape (C, N, 1)."""
+    """Checks that at least one application asks for, and True for the applications that do, shape (C, N, 1)."""
     always = np.zeros((len(case.duty.average_torque_Nm), 1))
-    inputs = [case.asked[check.asked] if check.asked else always for check in CHECKS]
+    inputs = [case.inputs[check.trigger] if check.trigger else always for check in CHECKS]
     mask = ~np.isnan(np.concatenate(np.broadcast_arrays(*inputs), axis=1)).T
     for place, check in enumerate(CHECKS):
         if check.instead:
-            mask[place] |= ~np.isnan(case.asked[check.instead][:, 0])
+            mask[place] |= ~np.isnan(case.inputs[check.instead][:, 0])
+        if check.unless:
+            mask[place] &= np.isnan(case.inputs[check.unless][:, 0])
     places = np.flatnonzero(mask.any(axis=1))
     return tuple(CHECKS[place] for place in places.tolist()), mask[places, :, None]
 
 
 def _verdicts(mask: BoolArray, used: FloatArray, bound: FloatArray, loads: int) -> tuple[NDArray[np.int8], FloatArray]:
-    """Verdict on each gear, and its utilisation; that of an unrated one is NaN. The first `loads` are load checks."""
+    """Verdict on each gear, and its utilisation, NaN for an unrated one. The first `loads` checks are load checks."""
     largest = np.fmax.reduce(used[:loads], axis=0)
     fails = largest > bound[0]
     if loads < len(used):

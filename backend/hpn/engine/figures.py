@@ -6,7 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from hpn.catalogue import Catalogue, GearList
-from hpn.engine.duty import Duty, TextArray
+from hpn.engine.duty import Duty
+from hpn.engine.input_arrays import TextArray
+from hpn.engine.motor_curves import CurveFigures, along_curves
 from hpn.engine.motor_torques import torque_limit, torques_at_motor
 from hpn.engine.stops import Stops
 from hpn.physics import bearing, equations, shaft_load, stiffness
@@ -16,7 +18,7 @@ from hpn.physics.stop import impact_speed
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """Figures of G gears under N applications, each array broadcasting to (N, G) and computed when it is first read.
+    """Figures of G gears under N applications, each array broadcasting to (N, G) and computed on first use.
 
     NaN: not published, or not asked for; infinity: without a limit.
     """
@@ -60,13 +62,13 @@ class Figures:
 
     @cached_property
     def _unasked(self) -> FloatArray:
-        """NaN in place of a figure that nobody asked for, shape (N, 1)."""
+        """NaN in place of a figure that no application asks for, shape (N, 1)."""
         return np.full_like(self.duty.average_torque_Nm, np.nan)
 
     @cached_property
     def motor_inertia_kgm2(self) -> FloatArray:
-        """Inertia of the motor, and of the gear at its input where a supplement gives it, in kg m²; shape (N, G)."""
-        return self.duty.asked["requirements.motor.inertia_kgm2"] + np.nan_to_num(self.gears.columns.inertia_kgm2)
+        """Inertia in kg m² of the motor, plus the gear's at its input from a supplement; shape (N, G)."""
+        return self.duty.inputs["requirements.motor.inertia_kgm2"] + np.nan_to_num(self.gears.columns.inertia_kgm2)
 
     @cached_property
     def natural_frequency_Hz(self) -> FloatArray:
@@ -112,8 +114,8 @@ class Figures:
 
     @cached_property
     def position_error_mm(self) -> FloatArray:
-        """The same as a length in mm at the radius that is asked for, shape (N, G)."""
-        radius = self.duty.asked["requirements.position_radius_mm"]
+        """The same as a length in mm at the requested radius, shape (N, G)."""
+        radius = self.duty.inputs["requirements.position_radius_mm"]
         return stiffness.arc_length(angle_arcmin=self.position_error_arcmin, radius_mm=radius)
 
     @cached_property
@@ -123,7 +125,7 @@ class Figures:
 
     @cached_property
     def stop_torque_Nm(self) -> FloatArray:
-        """Torque T_k of an emergency stop in Nm: as it is given, else that of the brake; shape (N, 1) or (N, G)."""
+        """Torque T_k of an emergency stop in Nm: as given, else from the brake; shape (N, 1) or (N, G)."""
         torque = self.duty.typed_stop_torque_Nm
         return torque if self.duty.brakes is None else np.where(self.duty.brakes, self.stops.torque_Nm, torque)
 
@@ -134,13 +136,13 @@ class Figures:
         if not duty.has_shaft_drive:
             return self._unasked
         force: FloatArray = 2000 * self.stop_torque_Nm / duty.shaft_diameter_mm
-        radial, _ = shaft_load.rack_load(force_N=force, helix_deg=duty.asked["output_load.rack_helix_deg"])
-        is_rack = duty.asked.shaft_drive == "rack_and_pinion"
+        radial, _ = shaft_load.rack_load(force_N=force, helix_deg=duty.inputs["output_load.rack_helix_deg"])
+        is_rack = duty.inputs.shaft_drive == "rack_and_pinion"
         return np.where(is_rack, radial, np.maximum(force, duty.shaft_radial_N))
 
     @cached_property
     def stop_energy_J(self) -> FloatArray:
-        """Energy of one stop in J that the brake takes, shape (N, G)."""
+        """Energy in J that the brake absorbs in one stop, shape (N, G)."""
         return self._unasked if self.duty.brakes is None else self.stops.course.energy_J
 
     @cached_property
@@ -150,24 +152,24 @@ class Figures:
 
     @cached_property
     def stopping_angle_deg(self) -> FloatArray:
-        """Angle in degrees that the output turns in a stop, shape (N, G)."""
+        """Angle of the output in a stop in degrees, shape (N, G)."""
         return self._unasked if self.duty.brakes is None else np.degrees(self.stops.course.angle_rad)
 
     @cached_property
     def stopping_distance_mm(self) -> FloatArray:
-        """The same as a length in mm at the radius that is asked for, shape (N, G)."""
-        radius = self.duty.asked["requirements.position_radius_mm"]
+        """The same as a length in mm at the requested radius, shape (N, G)."""
+        radius = self.duty.inputs["requirements.position_radius_mm"]
         return self._unasked if self.duty.brakes is None else self.stops.course.angle_rad * radius
 
     @cached_property
     def end_stop_speed_rpm(self) -> FloatArray:
-        """Output speed in rpm from which an end stop that the load meets brings the gear to T_M, shape (N, G)."""
+        """Lowest output speed in rpm at which the load, meeting an end stop, brings the gear to T_M, shape (N, G)."""
         at_output = np.square(self.gears.columns.ratio) * self.motor_inertia_kgm2
         return self._impact_speed_rpm(at_output)
 
     @cached_property
     def motor_lock_speed_rpm(self) -> FloatArray:
-        """Output speed in rpm from which a motor that locks brings the gear to T_M, shape (N, G)."""
+        """Lowest output speed in rpm at which a locking motor brings the gear to T_M, shape (N, G)."""
         return self._impact_speed_rpm(self.duty.load_inertia_kgm2)
 
     def _impact_speed_rpm(self, inertia_kgm2: FloatArray) -> FloatArray:
@@ -191,7 +193,7 @@ class Figures:
 
     @cached_property
     def bearing_life_factor(self) -> FloatArray:
-        """Load factor k that speed and required life allow on the output bearing, shape (N, 1). [-]"""
+        """Permissible load factor k of the output bearing at speed and required life, shape (N, 1). [-]"""
         reference_speed_rpm, reference_life_h = self.catalogue.bearing_reference
         return bearing.life_factor(
             average_output_speed_rpm=self.duty.average_output_speed_rpm,
@@ -218,22 +220,22 @@ class Figures:
 
     @cached_property
     def judged_bearing_life_h(self) -> FloatArray:
-        """Life of the output bearing in hours on the basis of the required one, shape (N, G)."""
-        return np.where(self.duty.asked.life_basis == "L10", self.bearing_life_L10_h, self.bearing_life_L50_h)
+        """Life of the output bearing in hours on the basis (L10 or L50) of the required life, shape (N, G)."""
+        return np.where(self.duty.inputs.life_basis == "L10", self.bearing_life_L10_h, self.bearing_life_L50_h)
 
     @cached_property
     def shortest_life_h(self) -> FloatArray:
         """The smaller of gear life L10 and judged bearing life in hours, shape (N, G); the gear's without a load.
 
-        NaN where one of them is not rated.
+        NaN if one of them is not rated.
         """
-        loaded = ~np.isnan(self.duty.asked["output_load.load_coefficient"])
+        loaded = ~np.isnan(self.duty.inputs["output_load.load_coefficient"])
         return np.where(loaded, np.minimum(self.life_L10_h, self.judged_bearing_life_h), self.life_L10_h)
 
     @cached_property
     def shortest_life_of(self) -> TextArray:
-        """The life that this is, shape (N, G): of gear or bearing, with its basis; blank where there is no number."""
-        of_bearing = np.where(self.duty.asked.life_basis == "L10", "bearing_L10", "bearing_L50")
+        """Name of the shortest life, shape (N, G): gear or bearing, with its basis; blank without a number."""
+        of_bearing = np.where(self.duty.inputs.life_basis == "L10", "bearing_L10", "bearing_L50")
         is_gear = self.shortest_life_h >= self.life_L10_h * (1 - ROUNDING)
         return np.where(np.isfinite(self.shortest_life_h), np.where(is_gear, "gear_L10", of_bearing), "")
 
@@ -248,8 +250,23 @@ class Figures:
         return self._motor_torques[1]
 
     @cached_property
+    def by_curve(self) -> CurveFigures:
+        """Figures of the motor along its torque curve."""
+        return along_curves(self.duty, self.gears, self.catalogue)
+
+    @cached_property
+    def motor_thermal_torque_Nm(self) -> FloatArray:
+        """RMS torque in Nm at which the motor's losses balance along its curve, shape (N, G)."""
+        return self.by_curve.thermal_Nm
+
+    @cached_property
+    def motor_mean_speed_torque_Nm(self) -> FloatArray:
+        """Continuous torque in Nm of the motor's curve at its mean speed, shape (N, G)."""
+        return self.by_curve.at_mean_speed_Nm
+
+    @cached_property
     def motor_torque_limit_Nm(self) -> FloatArray:
-        """Torque in Nm to set in the drive, so that the output stays at or below T_R; shape (N, G)."""
+        """Torque limit in Nm of the drive that keeps the output at or below T_R; shape (N, G)."""
         return torque_limit(self.duty, self.gears, self.catalogue)
 
     @cached_property
@@ -258,9 +275,9 @@ class Figures:
 
     @cached_property
     def bearing_loads_at_least(self) -> tuple[FloatArray, FloatArray]:
-        """Lower bounds of both loads where only the shaft's centre is not known, else NaN; shape (N, G).
+        """Lower bounds of both loads where only the shaft's centre is unknown, else NaN; shape (N, G).
 
-        They are those of the loads at the shaft's centre and along its axis, which no lever makes smaller.
+        They count the loads at the shaft's centre and along its axis: no lever makes them smaller.
         """
         at_centre = self.duty.phases.radial_N
         if radial_at_centre(self.duty, self.gears) is at_centre:
@@ -278,11 +295,11 @@ class Figures:
 
 
 def phase_loads(duty: Duty, gears: GearList, radial_N: FloatArray | None = None) -> FloatArray:
-    """f_w P of every phase on the bearing of every size, shape (N, sizes, phases); `radial_N` is that at the centre.
+    """Load f_w P of every phase on the bearing of every size, shape (N, sizes, phases); `radial_N` acts at the centre.
 
     NaN without a load, where the limits of a size are not published, and where the digitised model lacks its curve.
     """
-    first, phases, model = gears.first_of_size, duty.phases, duty.asked.bearing_model[..., None]
+    first, phases, model = gears.first_of_size, duty.phases, duty.inputs.bearing_model[..., None]
     radial = radial_at_centre(duty, gears) if radial_N is None else radial_N
     with np.errstate(all="ignore"):
         r = radial / gears.columns.dynamic_radial_load_N[first][:, None]
@@ -295,15 +312,16 @@ def phase_loads(duty: Duty, gears: GearList, radial_N: FloatArray | None = None)
             if (curve := gears.curves[gear]) is not None:
                 own = np.broadcast_to(radial, P.shape)[along, place]
                 P[along, place] = curve.equivalent_load(own, phases.axial_N[along, 0])
-    return P * duty.asked["output_load.load_coefficient"][..., None]
+    return P * duty.inputs["output_load.load_coefficient"][..., None]
 
 
 def radial_at_centre(duty: Duty, gears: GearList) -> FloatArray:
-    """Radial load in N of every phase that stands for where it acts, on every size; shape (N, sizes or 1, phases).
+    """Radial load in N at the shaft's centre equivalent to each phase's loads, on every size; shape (N, sizes or 1,
+    phases).
 
-    NaN where the shaft's centre is not known and a lever acts in some phase; the load itself where none is given.
+    NaN where the shaft's centre is unknown and a lever acts in some phase; the radial load itself without a lever.
     """
-    inputs, phases = duty.asked, duty.phases
+    inputs, phases = duty.inputs, duty.phases
     x, y = inputs["output_load.radial_position_mm"], inputs["output_load.axial_radius_mm"]
     if np.isnan(x).all() and not (y > 0).any():
         return phases.radial_N
@@ -318,18 +336,18 @@ def radial_at_centre(duty: Duty, gears: GearList) -> FloatArray:
 
 
 def shaft_centre_mm(duty: Duty, gears: GearList) -> FloatArray:
-    """Distance x_c in mm of the shaft's centre of every size, shape (N, sizes): the catalogue's, else as it is given.
+    """Distance x_c in mm of the shaft's centre of every size, shape (N, sizes): the catalogue's, else as given.
 
-    NaN where neither is known.
+    NaN if neither is known.
     """
     own = gears.columns.shaft_centre_mm[gears.first_of_size]
-    typed = duty.asked.shaft_centre_mm([gears.rows[place].size for place in gears.first_of_size.tolist()])
+    typed = duty.inputs.shaft_centre_mm([gears.rows[place].size for place in gears.first_of_size.tolist()])
     return np.where(np.isnan(own), typed, own)
 
 
 def _bearing_loads(duty: Duty, gears: GearList, radial_N: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Largest f_w P of a phase, and f_w P_m of the cycle, on every gear, shape (N, G)."""
-    if np.isnan(duty.asked["output_load.load_coefficient"]).all():
+    if np.isnan(duty.inputs["output_load.load_coefficient"]).all():
         nothing = np.full((1, 1), np.nan)
         return nothing, nothing
     loads, phases = phase_loads(duty, gears, radial_N), duty.phases

@@ -1,7 +1,7 @@
-"""Answers of earlier versions: which figures a saved one has. Whatever reads one asks here, and guesses nothing.
+"""Answers of earlier versions, and the figures that a saved answer has. Readers ask here instead of guessing.
 
-A version gives every figure that it knows of every candidate, null where it has no value. So a figure that an answer
-lacks is one that its version did not know: it is left out where it would be shown, not read as null.
+An answer gives every figure that its version knows of every candidate, null without a value. A figure that an answer
+lacks was thus unknown to its version: it is left out of a page instead of being read as null.
 """
 
 from collections.abc import Mapping
@@ -15,11 +15,11 @@ from hpn.engine.selection import CheckDefinition, Selection
 
 
 class UnreadableReplyError(ValueError):
-    """An answer without a part that those of every version have, such as the verdict on a gear."""
+    """An answer without a part that every version has, such as the verdict on a gear."""
 
 
 class KeptCandidate(Candidate, frozen=True):
-    """A candidate of an answer whose version did not know some figures, which `unknown` names."""
+    """A candidate of an older answer; `unknown` names the figures that its version did not know."""
 
     unknown: frozenset[str] = frozenset()
 
@@ -28,38 +28,40 @@ class KeptCandidate(Candidate, frozen=True):
         return figure not in self.unknown
 
 
-class _Said(msgspec.Struct):
+class _RawFields(msgspec.Struct):
     """The fields that an answer has, by their names."""
 
     candidates: list[dict[str, Raw]]
 
 
 _selection = msgspec.json.Decoder(Selection).decode
-_said = msgspec.json.Decoder(_Said).decode
+_fields = msgspec.json.Decoder(_RawFields).decode
 
 
 def decode(content: bytes) -> Selection:
-    """Selection of a saved answer, of this version or an earlier one; raises UnreadableReplyError for any other."""
+    """Selection from a saved answer of this version or an earlier one; raises UnreadableReplyError for any other
+    content.
+    """
     try:
-        selection, said = _selection(content), _said(content)
+        selection, raw = _selection(content), _fields(content)
     except msgspec.MsgspecError as error:
         raise UnreadableReplyError(f"the saved result can’t be read: {error}") from None
     if not selection.candidates:
         raise UnreadableReplyError("the saved result has no candidate")
-    candidates = map(_with_unknown, selection.candidates, said.candidates)
+    candidates = map(_with_unknown, selection.candidates, raw.candidates)
     definitions = selection.check_definitions | _lacking(selection)
     return structs.replace(selection, candidates=tuple(candidates), check_definitions=definitions)
 
 
 def fields_of(content: bytes) -> Mapping[str, Any]:
-    """A saved answer with the fields that it has, and no other."""
+    """A saved answer with its own fields only."""
     fields: dict[str, Any] = msgspec.json.decode(content)
     return fields
 
 
-def _with_unknown(candidate: Candidate, said: Mapping[str, Raw]) -> Candidate:
-    reserve = _reserve(said["reserve"]) if "reserve" in said else {}
-    unknown = _FIGURES - said.keys() | {f"reserve.{name}" for name in _RESERVES - reserve.keys()}
+def _with_unknown(candidate: Candidate, raw: Mapping[str, Raw]) -> Candidate:
+    reserve = _reserve(raw["reserve"]) if "reserve" in raw else {}
+    unknown = _FIGURES - raw.keys() | {f"reserve.{name}" for name in _RESERVES - reserve.keys()}
     return KeptCandidate(**structs.asdict(candidate), unknown=unknown) if unknown else candidate
 
 
@@ -68,7 +70,7 @@ _reserve = msgspec.json.Decoder(dict[str, Raw]).decode
 
 
 def _lacking(selection: Selection) -> dict[str, CheckDefinition]:
-    """Definitions of checks that an answer has without one: by their code, as pure numbers."""
+    """Definitions for checks that an answer does not define: by their code, as pure numbers."""
     codes = {check.code for candidate in selection.candidates for check in candidate.checks}
     return {
         code: CheckDefinition(title=code, equation=None, unit="", kind="maximum", group="load")

@@ -1,12 +1,12 @@
-"""Fewest kinds of gears that serve a machine: for each number of kinds the set of least weight.
+"""Fewest kinds of gears for a machine: for each number of kinds the set of least weight.
 
-Each axis takes the lightest gear of a set that suits it, so that the weight of a set is a sum of minima. Axes that the
-same gears suit are one row, and a gear that is no lighter than another one and suits no further axis is left out:
-10,000 axes come down to some hundred rows, on which branch and bound is exact (Land and Doig 1960).
+Each axis takes the lightest suitable gear of a set, so that the weight of a set is a sum of minima. Axes with the same
+suitable gears form one row. A gear is left out if another is at most as heavy and suits the same axes. So 10,000 axes
+shrink to some hundred rows, on which branch and bound is exact (Land and Doig 1960).
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import monotonic
 
 import numpy as np
@@ -16,18 +16,18 @@ from hpn.engine.evaluation import BoolArray, PlaceArray
 from hpn.physics.equations import ROUNDING, FloatArray
 
 NO_GEAR = -1
-"""Place of the gear of an axis that has none."""
+"""Place of an axis without a gear."""
 
 SECONDS = 1.0
-"""Time after which the best set that the search has is taken, unproven."""
+"""Seconds after which the search ends with its best set so far, unproven."""
 
 
 @dataclass(frozen=True, eq=False)
 class GearChoices:
     """Choices of A axes among G gears.
 
-    `suits` (A, G), `utilisation` (A, G) of these gears, `weight_kg` (G,) with NaN where none is published, `quantity`
-    (A,) of each axis in the machine, `present` (A,) the place of the gear that it has, NO_GEAR for none.
+    `suits` (A, G), `utilisation` (A, G) of these gears, `weight_kg` (G,) with NaN if not published, `quantity` (A,) of
+    each axis in the machine, `present` (A,) the place of the axis's gear, NO_GEAR without one.
     """
 
     suits: BoolArray
@@ -37,8 +37,9 @@ class GearChoices:
     present: PlaceArray
 
     def gears_of(self, kinds: Sequence[int]) -> PlaceArray:
-        """Gear of each axis out of `kinds`, NO_GEAR where none suits: the lightest, of equal ones its own, then the
-        least used; shape (A,).
+        """Gear of each axis out of `kinds`, NO_GEAR where none suits; shape (A,).
+
+        The lightest; among equally light ones the axis's present gear, then the least used.
         """
         places = np.asarray(kinds, np.intp)
         weight = np.where(self.suits[:, places], self.weight_kg[places], np.inf)
@@ -50,7 +51,7 @@ class GearChoices:
 
 @dataclass(frozen=True, eq=False)
 class LightestSet:
-    """Gears of one number of kinds, as places; `gear_of` (A,) says which axis takes which, NO_GEAR where none suits."""
+    """Gears of one number of kinds, as places; `gear_of` (A,) is the gear of each axis, NO_GEAR where none suits."""
 
     gears: tuple[int, ...]
     gear_of: PlaceArray
@@ -60,7 +61,7 @@ class LightestSet:
 
 @dataclass(frozen=True, eq=False)
 class Kinds:
-    """Steps from the machine's own number of kinds down to the least; the axes that leave no choice, by their gear."""
+    """Steps from the machine's own number of kinds down to the least; and the axes without a choice, by their gear."""
 
     steps: tuple[LightestSet, ...]
     least: int
@@ -70,10 +71,10 @@ class Kinds:
 def fewest_kinds(axes: GearChoices, *, most: int | None = None, seconds: float = SECONDS) -> Kinds:
     """Sets of least weight for each number of kinds up to `most` and the machine's own.
 
-    Axes that no gear suits count nowhere; a gear without a published weight is taken for none. A number of kinds at
-    which no further kind saves weight or leaves an axis its own gear is left out.
+    Axes without a suitable gear count nowhere; gears without a published weight are excluded. A number of kinds is left
+    out if its last kind neither saves weight nor leaves an axis its own gear.
     """
-    axes = _weighed(axes)
+    axes = replace(axes, suits=axes.suits & np.isfinite(axes.weight_kg))
     served = axes.suits.any(axis=1)
     if not served.any():
         return Kinds((), 0, {})
@@ -94,11 +95,6 @@ def fewest_kinds(axes: GearChoices, *, most: int | None = None, seconds: float =
     return Kinds(tuple(steps[count] for count in sorted(steps, reverse=True)), least, _forced(axes.suits))
 
 
-def _weighed(axes: GearChoices) -> GearChoices:
-    suits = axes.suits & np.isfinite(axes.weight_kg)
-    return GearChoices(suits, axes.utilisation, axes.weight_kg, axes.quantity, axes.present)
-
-
 def _forced(suits: BoolArray) -> dict[int, tuple[int, ...]]:
     (single,) = np.nonzero(suits.sum(axis=1) == 1)
     gears = suits[single].argmax(axis=1)
@@ -106,20 +102,20 @@ def _forced(suits: BoolArray) -> dict[int, tuple[int, ...]]:
 
 
 def _step(axes: GearChoices, best: "_Set", count: int, own: Iterable[int]) -> LightestSet:
-    """A set with the gears that axes keep at no more weight, up to `count`; gears that no axis takes left out."""
-    kinds = _taken(axes, best.gears)
+    """A set with gears added that axes keep at no more weight, up to `count`; unused gears are left out."""
+    kinds = _gears_of(axes, best.gears)
     for gear in sorted(set(own) - set(kinds), key=lambda gear: -np.count_nonzero(axes.present == gear)):
         if len(kinds) < count:
-            kinds = _taken(axes, (*kinds, gear))
+            kinds = _gears_of(axes, (*kinds, gear))
     gear_of = axes.gears_of(kinds)
     has_gear = gear_of != NO_GEAR
     weight_kg = float(np.sum(axes.weight_kg[gear_of[has_gear]] * axes.quantity[has_gear]))
     return LightestSet(kinds, gear_of, weight_kg, best.is_proven)
 
 
-def _taken(axes: GearChoices, kinds: Sequence[int]) -> tuple[int, ...]:
-    taken = np.unique(axes.gears_of(kinds))
-    return tuple(taken[taken != NO_GEAR].tolist())
+def _gears_of(axes: GearChoices, kinds: Sequence[int]) -> tuple[int, ...]:
+    gears = np.unique(axes.gears_of(kinds))
+    return tuple(gears[gears != NO_GEAR].tolist())
 
 
 # --- Search -----------------------------------------------------------------------------------------------------------
@@ -145,7 +141,7 @@ class _Search:
 
     @classmethod
     def of(cls, axes: GearChoices, own: Sequence[int], end: float) -> "_Search":
-        """Search over distinct rows of axes, without gears that another one replaces."""
+        """Search over distinct rows of axes, without replaceable gears."""
         served = axes.suits.any(axis=1)
         rows, row_of = np.unique(axes.suits[served], axis=0, return_inverse=True)
         is_own = np.isin(np.arange(rows.shape[1]), own)
@@ -155,7 +151,7 @@ class _Search:
         return cls(places, cost, share, end)
 
     def lightest(self, count: int, fewer: _Set) -> _Set:
-        """Lightest set of at most `count` gears, from that of one fewer."""
+        """Lightest set of at most `count` gears, starting from the set of one fewer."""
         before = tuple(np.flatnonzero(np.isin(self.places, fewer.gears)).tolist())
         nearer = np.minimum(self.cost, self.cost[:, list(before)].min(axis=1, initial=np.inf, keepdims=True))
         bare, weights_kg = np.isinf(nearer).sum(axis=0), self.share @ nearer
@@ -166,14 +162,11 @@ class _Search:
         is_proven = self._branch(np.full(len(self.cost), np.inf), np.arange(len(self.places)), (), count)
         return _Set(tuple(self.places[list(self._best)].tolist()), self._weight_kg, is_proven)
 
-    def _take(self, gears: tuple[int, ...], weight_kg: float) -> None:
-        if weight_kg < self._weight_kg * (1 - ROUNDING):
-            self._best, self._weight_kg = gears, weight_kg
-
     def _branch(self, nearest: FloatArray, still: PlaceArray, chosen: tuple[int, ...], left: int) -> bool:
-        """Try every set that adds up to `left` of the gears `still` to those chosen; False if time ended it."""
+        """Try every set that adds up to `left` gears from `still` to the chosen ones; False if the time ran out."""
         weight_kg = float(nearest @ self.share)
-        self._take(chosen, weight_kg)
+        if weight_kg < self._weight_kg * (1 - ROUNDING):
+            self._best, self._weight_kg = chosen, weight_kg
         if not left or not len(still):
             return True
         if monotonic() > self.end:
@@ -204,7 +197,7 @@ class _Search:
 
 
 def _undominated(rows: BoolArray, order: PlaceArray) -> PlaceArray:
-    """Gears in an order, without those of which an earlier one suits every row as well."""
+    """Gears in an order, without those whose rows an earlier gear suits as well."""
     best: list[int] = []
     for gear in order.tolist():
         replaced = any(not (rows[:, gear] & ~rows[:, other]).any() for other in best)
@@ -214,12 +207,12 @@ def _undominated(rows: BoolArray, order: PlaceArray) -> PlaceArray:
 
 
 def _apart(suits: BoolArray, most: int) -> int:
-    """Number of rows, counted up to one above `most`, of which no two share a gear: each needs one of its own."""
-    taken = np.zeros(suits.shape[1], np.bool_)
+    """Number of rows that share no gear with one another, counted up to `most` + 1: each of them needs its own gear."""
+    gears = np.zeros(suits.shape[1], np.bool_)
     count = 0
     for row in suits[np.argsort(suits.sum(axis=1), kind="stable")]:
-        if not (row & taken).any():
-            taken |= row
+        if not (row & gears).any():
+            gears |= row
             count += 1
             if count > most:
                 break

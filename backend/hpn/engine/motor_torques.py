@@ -1,5 +1,6 @@
-"""Torques at the motor under duty cycles, with the efficiency, the inertia and the torque without load of gears."""
+"""Motor torques under duty cycles, with the efficiency, inertia and no-load torque of gears."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -13,17 +14,18 @@ from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, motor_torques
 
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.intp]
 
 
 def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque at the motor, shape (N, G); loss-free where no efficiency is known.
+    """Peak and RMS torque at the motor in Nm, shape (N, G); loss-free where no efficiency is known.
 
     A stated efficiency has precedence over a supplied curve, which is read at a phase's peak for the peak and at its
-    RMS for the RMS. In a motion with a known motor inertia the torque counts at every instant, that inertia included.
-    A gear's own inertia and no-load torque from a supplement count as well. With many motors of one application shape
-    (motors, G).
+    RMS for the RMS. In a motion with a known motor inertia the torque counts at every instant, that inertia included. A
+    gear's own inertia and no-load torque from a supplement count as well. With many motors of one application the shape
+    is (motors, G).
     """
-    stated, ratio = duty.asked["requirements.efficiency"], gears.columns.ratio
+    stated, ratio = duty.inputs["requirements.efficiency"], gears.columns.ratio
     eta = np.where(np.isnan(stated), 1.0, stated)
     peak = equations.motor_torque(output_torque_Nm=duty.maximum_torque_Nm, ratio=ratio, efficiency=eta)
     rated = equations.motor_torque(output_torque_Nm=duty.rms_torque_Nm, ratio=ratio, efficiency=eta)
@@ -34,31 +36,61 @@ def torques_at_motor(duty: Duty, gears: GearList, catalogue: Catalogue) -> tuple
         rms = equations.rms_torque(
             torque_Nm=at_rms,
             duration_s=duty.phases.duration_s[:, 0],
-            pause_s=duty.asked["duty_cycle.pause_s"][:, 0],
+            pause_s=duty.inputs["duty_cycle.pause_s"][:, 0],
         )
         peak[some, place], rated[some, place] = at_peak.max(axis=1)[some], rms[some]
-    inertia = duty.asked["requirements.motor.inertia_kgm2"][:, 0]
-    many = len(inertia) > len(peak)
-    if many:
-        peak, rated = (np.repeat(torque, len(inertia), axis=0) for torque in (peak, rated))
-    for index, course in duty.courses.items():
-        rows = np.arange(len(inertia)) if many else np.array([index])
-        heavy = rows[~np.isnan(inertia[rows])]
-        if heavy.size:
-            peak[heavy], rated[heavy] = _with_own_inertia(duty, index, course, inertia[heavy], gears, catalogue)
+    count = len(duty.inputs["requirements.motor.inertia_kgm2"])
+    if count > len(peak):  # many motors of one application
+        peak, rated = (np.repeat(torque, count, axis=0) for torque in (peak, rated))
+    for courses, rows in _driven(duty):
+        peak[rows], rated[rows] = _with_own_inertia(duty, courses, rows, gears, catalogue)
     return peak, rated
 
 
-def torques_by_phase(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
-    """RMS torque at the motor in each phase, its own inertia left out, shape (N, G, phases).
+def _driven(duty: Duty) -> list[tuple[list[Course], IntArray]]:
+    """Courses in which a motor's own inertia counts, and their rows, shape (times, courses).
 
-    Of all gears alike, shape (N, 1, phases), but for a factor, where no gear has figures of its own.
+    Courses with one row each form one group; a course with more rows, as for many motors or points of a box, is alone.
+    """
+    inertia = duty.inputs["requirements.motor.inertia_kgm2"][:, 0]
+    known, many = ~np.isnan(inertia), len(inertia) > len(duty.typed.torque_Nm)
+    rows_of = [
+        (course, np.flatnonzero(known).tolist() if many else [index for index in indices if known[index]])
+        for course, indices in courses_once(duty)
+    ]
+    single = [(course, rows[0]) for course, rows in rows_of if len(rows) == 1]
+    groups = [([course], np.array(rows)[:, None]) for course, rows in rows_of if len(rows) > 1]
+    if single:
+        groups.append(([course for course, _ in single], np.array([[row for _, row in single]])))
+    return groups
+
+
+def courses_once(duty: Duty) -> list[tuple[Course, list[int]]]:
+    """Distinct courses, and the applications with each of them: points of a box share one."""
+    courses: dict[int, tuple[Course, list[int]]] = {}
+    for index, course in duty.courses.items():
+        courses.setdefault(id(course), (course, []))[1].append(index)
+    return list(courses.values())
+
+
+def asked_in(duty: Duty, path: str, rows: IntArray) -> FloatArray:
+    """An input in some rows, of the shape of `rows`; for many motors of one application the single value is
+    repeated.
+    """
+    values = duty.inputs[path][:, 0]
+    return values[rows] if len(values) > 1 else np.full(rows.shape, values[0])
+
+
+def torques_by_phase(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
+    """RMS torque at the motor in Nm in each phase without its own inertia, shape (N, G, phases).
+
+    Shape (N, 1, phases), correct up to a factor per gear, where no gear has figures of its own.
     """
     T = duty.phases.rms_torque_Nm
     apart = _apart(duty, gears, catalogue)
     if not apart:
         return T
-    stated = duty.asked["requirements.efficiency"][..., None]
+    stated = duty.inputs["requirements.efficiency"][..., None]
     eta = np.where(np.isnan(stated), 1.0, stated)
     torque = equations.motor_torque(output_torque_Nm=T, ratio=gears.columns.ratio[:, None], efficiency=eta)
     for place in apart:
@@ -68,16 +100,18 @@ def torques_by_phase(duty: Duty, gears: GearList, catalogue: Catalogue) -> Float
 
 
 def _apart(duty: Duty, gears: GearList, catalogue: Catalogue) -> list[int]:
-    """Places of gears whose torque at the motor goes by a curve, or has their torque without load in it."""
-    unstated = bool(np.isnan(duty.asked["requirements.efficiency"]).any())
+    """Places of gears whose motor torque follows an efficiency curve or includes a no-load torque."""
+    unstated = bool(np.isnan(duty.inputs["requirements.efficiency"]).any())
     curved = [place for place, gear in enumerate(gears.rows) if gear.designation in catalogue.efficiency]
     without_load = np.nan_to_num(gears.columns.no_load_torque_Nm)
     return sorted({*(curved if unstated else ()), *np.flatnonzero(without_load).tolist()})
 
 
 def _by_curve(duty: Duty, place: int, gears: GearList, catalogue: Catalogue) -> tuple[BoolArray, BoolArray]:
-    """True for applications in which a gear goes by its curve, and in which its figures count, shape (N,)."""
-    unstated = np.isnan(duty.asked["requirements.efficiency"])[:, 0]
+    """True for applications in which a gear's curve counts, and True for those in which any of its figures counts,
+    shape (N,).
+    """
+    unstated = np.isnan(duty.inputs["requirements.efficiency"])[:, 0]
     own = unstated & (gears.rows[place].designation in catalogue.efficiency)
     return own, own | bool(np.nan_to_num(gears.columns.no_load_torque_Nm)[place])
 
@@ -85,8 +119,8 @@ def _by_curve(duty: Duty, place: int, gears: GearList, catalogue: Catalogue) -> 
 def _at_motor(
     torque_Nm: FloatArray, duty: Duty, place: int, own: BoolArray, gears: GearList, catalogue: Catalogue
 ) -> FloatArray:
-    """Torque at the motor for torques of the phases at one gear, shape (N, phases)."""
-    gear, stated = gears.rows[place], duty.asked["requirements.efficiency"]
+    """Torque at the motor in Nm for torques of the phases at one gear, shape (N, phases)."""
+    gear, stated = gears.rows[place], duty.inputs["requirements.efficiency"]
     eta = np.where(np.isnan(stated), 1.0, stated)
     if own.any():
         eta = np.where(own[:, None], efficiency_at(torque_Nm, gear, catalogue), eta)
@@ -95,56 +129,94 @@ def _at_motor(
 
 
 def _with_own_inertia(
-    duty: Duty, index: int, course: Course, inertia_kgm2: FloatArray, gears: GearList, catalogue: Catalogue
+    duty: Duty, courses: Sequence[Course], rows: IntArray, gears: GearList, catalogue: Catalogue
 ) -> tuple[FloatArray, FloatArray]:
-    """Peak and RMS torque at motors of application `index`, their own inertia included, shape (motors, G) each.
+    """Peak and RMS torque in Nm at motors along courses, their own inertia included, shape (times, courses, G) each.
 
-    Gears of one ratio without figures of their own have the same torques, which are computed once.
+    Gears of one ratio without figures of their own have the same torques, which are computed once. `rows` (times,
+    courses) are the rows of inertia, pause and efficiency.
     """
-    stated = duty.asked["requirements.efficiency"].item(index)
-    alone = [
-        gear.designation in catalogue.efficiency or gear.inertia_kgm2 or gear.no_load_torque_Nm for gear in gears.rows
-    ]
-    kinds = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, alone, strict=True)]
-    first = {kind: kinds.index(kind) for kind in kinds}
-    at_peak, at_rms = (
-        np.array([efficiency_at(T, gears.rows[place], catalogue, stated) for place in first.values()])
-        for T in (course.peak_torque_Nm, course.rms_torque_Nm)
+    places, kinds = kinds_of(gears, catalogue)
+    inertia, pause_s, stated = (
+        asked_in(duty, path, rows)
+        for path in ("requirements.motor.inertia_kgm2", "duty_cycle.pause_s", "requirements.efficiency")
     )
-    places = np.array(list(first.values()))
-    of_gear, of_motor = np.tile(np.arange(len(places)), len(inertia_kgm2)), np.repeat(inertia_kgm2, len(places))
+    at_peak, at_rms = (
+        _efficiencies_along(courses, name, stated, [gears.rows[place] for place in places.tolist()], catalogue)
+        for name in ("peak_torque_Nm", "rms_torque_Nm")
+    )
+    of_gear = np.tile(np.arange(len(places)), len(rows))
     own_inertia, without_load = (
         np.nan_to_num(column[places])[of_gear]
         for column in (gears.columns.inertia_kgm2, gears.columns.no_load_torque_Nm)
     )
-    peak, rms = motor_torques(
-        course,
+    torques = motor_torques(
+        courses,
         ratio=gears.columns.ratio[places][of_gear],
-        efficiency_at_peak=at_peak[of_gear],
-        efficiency_at_rms=at_rms[of_gear],
-        motor_inertia_kgm2=of_motor + own_inertia,
-        pause_s=duty.asked["duty_cycle.pause_s"].item(index),
+        efficiency_at_peak=at_peak,
+        efficiency_at_rms=at_rms,
+        motor_inertia_kgm2=np.repeat(inertia, len(places), axis=0) + own_inertia[:, None],
+        pause_s=np.repeat(pause_s, len(places), axis=0),
         no_load_torque_Nm=without_load,
     )
-    row = {kind: place for place, kind in enumerate(first)}
-    rows = [row[kind] for kind in kinds]
-    return peak.reshape(-1, len(places))[:, rows], rms.reshape(-1, len(places))[:, rows]
+    peak, rms = (torque.reshape(-1, len(places), len(courses))[:, kinds].swapaxes(1, 2) for torque in torques)
+    return peak, rms
+
+
+def _efficiencies_along(
+    courses: Sequence[Course], torque: str, stated: FloatArray, gears: Sequence[Gear], catalogue: Catalogue
+) -> FloatArray:
+    """Efficiencies of gears at a torque of the phases of concatenated courses, shape (times × gears, phases).
+
+    `stated` has shape (times, courses).
+    """
+    T = np.concatenate([getattr(course, torque) for course in courses])
+    of_phases = np.repeat(stated, [len(course.move) for course in courses], axis=1)
+    known = np.array([efficiency_at(T, gear, catalogue) for gear in gears])
+    eta = np.where(np.isnan(of_phases)[:, None], known, of_phases[:, None])
+    return eta.reshape(-1, len(T))
+
+
+def kinds_of(gears: GearList, catalogue: Catalogue) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Places of the first gear of each kind, shape (kinds,), and the kind of each gear, (G,).
+
+    Gears of one ratio without figures of their own form one kind: they have the same torques at the motor.
+    """
+    alone = [
+        gear.designation in catalogue.efficiency or gear.inertia_kgm2 or gear.no_load_torque_Nm for gear in gears.rows
+    ]
+    names = [gear.designation if own else str(gear.ratio) for gear, own in zip(gears.rows, alone, strict=True)]
+    first = {name: names.index(name) for name in names}
+    kinds = {name: kind for kind, name in enumerate(first)}
+    return np.array(list(first.values())), np.array([kinds[name] for name in names])
+
+
+def peaks_by_phase(duty: Duty, places: NDArray[np.intp], gears: GearList, catalogue: Catalogue) -> FloatArray:
+    """Largest torque at the motor in Nm in each phase on some gears, without its own inertia, shape (N, places,
+    phases).
+    """
+    peaks = duty.phases.peak_torque_Nm[:, 0]
+    torques = (
+        _at_motor(peaks, duty, place, _by_curve(duty, place, gears, catalogue)[0], gears, catalogue)
+        for place in places.tolist()
+    )
+    return np.stack(list(torques), axis=1)
 
 
 def torque_limit(duty: Duty, gears: GearList, catalogue: Catalogue) -> FloatArray:
-    """Torque η T_R / i in Nm to which a drive limits its motor, shape (N, G); NaN where T_R is not published.
+    """Torque limit η T_R / i in Nm for the drive's motor, shape (N, G); NaN where T_R is not published.
 
-    With it the output stays at or below T_R, whether the motor drives (at most i M) or brakes (up to i M / η), as long
-    as its torque changes slowly against 1 / f_2. η as stated, else by a supplied curve at T_R, else 1.
+    It keeps the output at or below T_R, whether the motor drives (at most i M) or brakes (up to i M / η), as long as
+    its torque changes slowly against 1 / f_2. η as stated, else by a supplied curve at T_R, else 1.
     """
     T_R = gears.columns.repeated_peak_torque_Nm
-    stated, known = duty.asked["requirements.efficiency"], known_efficiency(gears, catalogue)
+    stated, known = duty.inputs["requirements.efficiency"], known_efficiency(gears, catalogue)
     return np.where(np.isnan(stated), np.where(np.isnan(known), 1.0, known), stated) * T_R / gears.columns.ratio
 
 
 @lru_cache(maxsize=256)
 def known_efficiency(gears: GearList, catalogue: Catalogue) -> FloatArray:
-    """Efficiency of each gear at its T_R by its curve of a supplement, shape (G,); NaN without one. [-]"""
+    """Efficiency of each gear at its T_R by its supplied curve, shape (G,); NaN without one. [-]"""
     known = np.full(len(gears.rows), np.nan)
     for place, gear in enumerate(gears.rows):
         if gear.designation in catalogue.efficiency:
@@ -153,7 +225,7 @@ def known_efficiency(gears: GearList, catalogue: Catalogue) -> FloatArray:
 
 
 def inertia_ratio(duty: Duty, gears: GearColumns, motor_inertia_kgm2: FloatArray) -> FloatArray:
-    """Inertia of the load at the motor, with the gear's own where it is known, over the motor's; broadcasts. [-]"""
+    """Inertia of the load at the motor, plus the gear's own if known, over the motor's; broadcasts. [-]"""
     return equations.inertia_ratio(
         load_inertia_kgm2=duty.load_inertia_kgm2,
         ratio=gears.ratio,
@@ -163,9 +235,9 @@ def inertia_ratio(duty: Duty, gears: GearColumns, motor_inertia_kgm2: FloatArray
 
 
 def efficiency_at(torque_Nm: FloatArray, gear: Gear, catalogue: Catalogue, stated: float = np.nan) -> FloatArray:
-    """Efficiency of a gear at torques: as stated, else by the curve that a supplement gives of it, else 1. [-]
+    """Efficiency of a gear at torques: as stated, else by its supplied curve, else 1. [-]
 
-    Beyond the ends of the curve it is that of the nearer end.
+    Beyond an end of the curve the value at that end counts.
     """
     if np.isnan(stated) and gear.designation in catalogue.efficiency:
         return np.interp(torque_Nm, *catalogue.efficiency[gear.designation])
@@ -174,7 +246,7 @@ def efficiency_at(torque_Nm: FloatArray, gear: Gear, catalogue: Catalogue, state
 
 def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
     """Efficiency of a gear in each phase of one application, at the phase's peak and at its RMS."""
-    phases, stated = duty.phases, duty.asked["requirements.efficiency"].item()
+    phases, stated = duty.phases, duty.inputs["requirements.efficiency"].item()
     at_peak, at_rms = (
         efficiency_at(torque[0, 0], gear, catalogue, stated) for torque in (phases.peak_torque_Nm, phases.rms_torque_Nm)
     )
@@ -182,7 +254,7 @@ def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArr
 
 
 def leaves_curve(catalogue: Catalogue, gear: Gear, duty: Duty, index: int) -> bool:
-    """True where a torque of application `index` lies beyond the ends of a gear's efficiency curve, unless it is 0."""
+    """True where a non-zero torque of application `index` lies beyond the ends of a gear's efficiency curve."""
     known, _ = catalogue.efficiency[gear.designation]
     torques = np.concatenate((duty.phases.peak_torque_Nm[index, 0], duty.phases.rms_torque_Nm[index, 0]))
     return bool(((torques > 0) & ((torques < known[0]) | (torques > known[-1]))).any())

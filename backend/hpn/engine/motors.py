@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hpn.application import LISTED_FIGURES, Application, Motor, MotorEntry
+from hpn.application import FURTHER_FIGURES, LISTED_FIGURES, Application, Motor, MotorEntry
 from hpn.catalogue import Catalogue, GearList, ListedMotor
 from hpn.catalogue.gear import Gear
-from hpn.engine.candidates import Candidate, CheckResult
+from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
 from hpn.engine.checks.motor import MOTOR, OF_MOTOR
 from hpn.engine.duty import Duty
@@ -16,6 +16,7 @@ from hpn.engine.evaluation import Evaluation, evaluate
 from hpn.engine.motor_torques import inertia_ratio
 from hpn.engine.selection import Selection
 from hpn.physics.equations import ROUNDING
+from hpn.words.titles import LONGEST_NAME, is_title
 
 MOTOR_CHECKS = tuple(check.code for check in OF_MOTOR)
 """Codes of the checks of the motor."""
@@ -25,9 +26,9 @@ LOADS = frozenset(check.code for check in MOTOR)
 
 @dataclass(frozen=True, slots=True)
 class MotorUse:
-    """One of the user's motors on a gear: utilisation by check, of those whose figures are known.
+    """One of the user's motors on a gear: utilisation by check, for checks with known figures.
 
-    `inertia_ratio` is the load's inertia over i² times the motor's; None where one of them is not known.
+    `inertia_ratio` is the load's inertia over i² times the motor's; None if one of them is unknown.
     """
 
     motor: ListedMotor
@@ -37,27 +38,28 @@ class MotorUse:
 
     @property
     def governing(self) -> str:
-        """Code of the check that is nearest to its limit; the inertia ratio counts as one only where it fails."""
+        """Code of the check nearest to its limit; the inertia ratio takes part only if it fails."""
         counting = {code: share for code, share in self.used.items() if code in LOADS or share > 1 + ROUNDING}
         return max(counting or self.used, key=self.used.__getitem__)
 
 
 def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> list[MotorUse]:
-    """The user's motors on a gear: those that fit first, by ascending rated torque, then the nearest miss first.
+    """The user's motors on a gear: fitting motors first, by ascending rated torque, then the others, the nearest miss
+    first.
 
-    Utilisations are those of `select` with that motor. A motor of which nothing is known that a check needs is left
-    out, and where an inertia ratio is asked for, each of which the inertia is not known: `select` refuses it.
+    Utilisations equal those of `select` with the motor. Motors are left out if no check has the figures it needs; and
+    motors without an inertia are left out if an inertia ratio is asked for, since `select` refuses them.
     """
     motors = catalogue.motors
     if not motors:
         return []
     evaluation = with_motors(application, motors, catalogue.listed([gear]), catalogue)
     case, u = evaluation.case, application.requirements.utilisation
-    ratios = inertia_ratio(case.duty, case.gears, case.asked["requirements.motor.inertia_kgm2"])[:, 0].tolist()
+    ratios = inertia_ratio(case.duty, case.gears, case.inputs["requirements.motor.inertia_kgm2"])[:, 0].tolist()
     places = [place for place, check in enumerate(evaluation.checks) if check.code in MOTOR_CHECKS]
     uses = []
     for row, (motor, ratio) in enumerate(zip(motors, ratios, strict=True)):
-        checks = [place for place in places if evaluation.asked.item(place, row, 0)]
+        checks = [place for place in places if evaluation.applies.item(place, row, 0)]
         shares = {evaluation.checks[place].code: evaluation.used.item(place, row, 0) for place in checks}
         if shares and not np.isnan(list(shares.values())).any():
             fits = all(share <= allowed(code, u) * (1 + ROUNDING) for code, share in shares.items())
@@ -66,13 +68,9 @@ def motors_on(application: Application, gear: Gear, catalogue: Catalogue) -> lis
 
 
 def asks_inertia_ratio(application: Application) -> bool:
-    """True where the load's inertia is limited to a multiple of the motor's, which then has to be known."""
+    """True where the load's inertia is limited to a multiple of the motor's, which must then be known."""
     motor = application.requirements.motor
     return motor is not None and motor.inertia_ratio is not None
-
-
-def _known(value: float | None) -> float:
-    return np.nan if value is None else value
 
 
 def _order(use: MotorUse) -> tuple[bool, float, float]:
@@ -83,19 +81,17 @@ def _order(use: MotorUse) -> tuple[bool, float, float]:
 def with_motors(
     application: Application, motors: Sequence[ListedMotor | MotorEntry], gears: GearList, catalogue: Catalogue
 ) -> Evaluation:
-    """Evaluation of an application with each of many motors in place of its own, a row for each of them."""
+    """Evaluation of an application with each of many motors in place of its own, one row per motor.
+
+    The permitted inertia ratio stays.
+    """
     figures = {
-        name: np.array([[_known(getattr(motor, name))] for motor in motors], dtype=np.float64)
-        for name in LISTED_FIGURES
+        name: np.array([[getattr(motor, name)] for motor in motors], dtype=np.float64) for name in LISTED_FIGURES
     }
-    return evaluate(Duty.of([_without_motor(application)]).with_motors(figures), gears, catalogue)
-
-
-def _without_motor(application: Application) -> Application:
-    """The application without a motor of its own; the permitted inertia ratio stays."""
+    curves = [motor.curve if isinstance(motor, MotorEntry) else None for motor in motors]
     motor = application.requirements.motor
     bound = Motor(inertia_ratio=motor.inertia_ratio) if asks_inertia_ratio(application) and motor else None
-    return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": bound})})
+    return evaluate(Duty.of([application.requiring(motor=bound)]).with_motors(figures, curves), gears, catalogue)
 
 
 def entries_of(motors: Sequence[ListedMotor]) -> list[MotorEntry]:
@@ -105,19 +101,19 @@ def entries_of(motors: Sequence[ListedMotor]) -> list[MotorEntry]:
 
 
 def with_motor(application: Application, motor: ListedMotor) -> Application:
-    """The application with a motor of the list in place of its own; the permitted inertia ratio stays."""
+    """The application with a listed motor in place of its own; the permitted inertia ratio stays."""
     own = application.requirements.motor
     named = Motor(designation=motor.designation, inertia_ratio=own.inertia_ratio if own else None)
-    return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": named})})
+    return application.requiring(motor=named)
 
 
 def with_figures(application: Application, motor: MotorEntry) -> Application:
-    """The application with a motor's figures in it; the permitted inertia ratio stays."""
+    """The application with a motor's figures filled in; the permitted inertia ratio stays."""
     typed = application.requirements.motor
-    own = Motor(
-        **{name: getattr(motor, name) for name in LISTED_FIGURES}, inertia_ratio=typed.inertia_ratio if typed else None
-    )
-    return application.model_copy(update={"requirements": application.requirements.model_copy(update={"motor": own})})
+    figures = {name: getattr(motor, name) for name in (*LISTED_FIGURES, *FURTHER_FIGURES)}
+    name = motor.designation if is_title(motor.designation, LONGEST_NAME) else None
+    own = Motor(**figures, name=name, inertia_ratio=typed.inertia_ratio if typed else None)
+    return application.requiring(motor=own)
 
 
 # --- Which gears ------------------------------------------------------------------------------------------------------
@@ -125,7 +121,7 @@ def with_figures(application: Application, motor: MotorEntry) -> Application:
 
 @dataclass(frozen=True, slots=True)
 class SizeWithMotor:
-    """Gears of one size with the motor that is asked for: those that fit, and those that fail by the motor alone."""
+    """Gears of one size with the requested motor: those that fit, and those that only the motor rules out."""
 
     size: str
     fit: tuple[Candidate, ...]
@@ -133,10 +129,11 @@ class SizeWithMotor:
 
 
 def ratios_with_motor(selection: Selection) -> list[SizeWithMotor]:
-    """Gears that are suitable with the motor or would be without it, by size and ascending ratio."""
+    """Gears that are suitable with the motor, or would be without it, by size and ascending ratio."""
     sizes: dict[str, list[Candidate]] = {}
     for candidate in selection.candidates:
-        if candidate.status == "suitable" or (candidate.is_judged and _fails_by_motor_alone(candidate.failing)):
+        by_motor_alone = bool(candidate.failing) and all(check.code in MOTOR_CHECKS for check in candidate.failing)
+        if candidate.status == "suitable" or (candidate.is_judged and by_motor_alone):
             sizes.setdefault(candidate.size, []).append(candidate)
     ratios = []
     for size in sorted(sizes, key=lambda size: int(size.rstrip("A"))):
@@ -144,7 +141,3 @@ def ratios_with_motor(selection: Selection) -> list[SizeWithMotor]:
         fit = tuple(one for one in own if one.status == "suitable")
         ratios.append(SizeWithMotor(size, fit, tuple(one for one in own if one.status != "suitable")))
     return ratios
-
-
-def _fails_by_motor_alone(failing: Sequence[CheckResult]) -> bool:
-    return bool(failing) and all(check.code in MOTOR_CHECKS for check in failing)

@@ -1,4 +1,4 @@
-"""A notice on a result: a code and values; its sentence is one of NOTICES, and is put together where it is shown."""
+"""A notice on a result: a code and values; its sentence is one of NOTICES, filled in where it is shown."""
 
 from collections.abc import Mapping
 from string import Formatter
@@ -120,6 +120,10 @@ NOTICES: Mapping[str, str] = {
         "Motor torques include the motor’s own inertia; the gear’s inertia and no-load losses are not published, and "
         "left out where no supplement gives them."
     ),
+    "rotor_not_included": N_(
+        "The torque that accelerates the motor’s rotor is not compared with its curve, which takes a motion and the "
+        "motor’s inertia. Of typed phases each peak is judged against the least peak torque up to its peak speed."
+    ),
     "motor_all_included": N_("Motor torques include the inertia of motor and gear and the gear’s no-load torque."),
     "limit_without_efficiency": N_(
         "The drive’s torque limit leaves out losses (no efficiency is known): in braking the gear can carry up to "
@@ -200,7 +204,7 @@ NOTICES: Mapping[str, str] = {
 """Sentences by code; a value whose name ends in a unit is a number in that unit."""
 
 TRANSLATED = ("area", "note")
-"""Values that are texts to be translated."""
+"""Values with texts to translate."""
 
 AREAS: Mapping[str, str] = {
     "aerospace": N_("aerospace"),
@@ -227,7 +231,7 @@ class Notice(Reply, frozen=True):
 
     @property
     def sentence(self) -> Sentence:
-        """The notice for any language and units; as it was written where its version kept no values."""
+        """The notice for any language and units; its English text if an earlier version kept no values."""
         template = NOTICES.get(_template_of(self.code, self.values), "")
         names = {name for _, name, *_ in Formatter().parse(template) if name}
         if not template or not names <= self.values.keys():
@@ -236,7 +240,7 @@ class Notice(Reply, frozen=True):
 
 
 _OTHERWISE = {("size_unrated", "names"): "gears_unrated", ("gear_below_motor", "momentary_Nm"): "gear_far_below_motor"}
-"""Other sentences of a code, by a value that they alone have."""
+"""Alternative sentences of a code, by a value that only these have."""
 
 
 def _template_of(code: str, values: Mapping[str, Mixed]) -> str:
@@ -251,11 +255,15 @@ def _sentence(template: str, values: Mapping[str, Mixed]) -> Sentence:
 
 
 def _unit_of(name: str) -> tuple[str, int, Rounding]:
-    """Unit, digits and rounding of a value; a limit to be set is rounded down, what is needed at least up."""
-    return suffix_of(name), DIGITS[suffix_of(name)], _ROUNDING.get(name, "nearest")
+    """Unit, digits and rounding of a value; a limit to be set is rounded down, a least need up."""
+    return suffix_of(name), _DIGITS.get(name, DIGITS[suffix_of(name)]), _ROUNDING.get(name, "nearest")
 
 
-_ROUNDING: Mapping[str, Rounding] = {"limit_Nm": "down", "share_percent": "down", "rate_kW_per_s": "up"}
+_DIGITS: Mapping[str, int] = {"torque_Nm": 4, "need_Nm": 4, "limit_Nm": 4}
+_ROUNDING: Mapping[str, Rounding] = {
+    **dict.fromkeys(("limit_Nm", "share_percent"), "down"),
+    **dict.fromkeys(("torque_Nm", "need_Nm", "rate_kW_per_s"), "up"),
+}
 
 
 def notice(code: str, **values: Mixed) -> Notice:

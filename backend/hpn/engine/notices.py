@@ -12,16 +12,17 @@ from hpn.catalogue.gear import Gear
 from hpn.engine.duty import unasked_shaft_load_N
 from hpn.engine.evaluation import SUITABLE, Evaluation
 from hpn.engine.figures import shaft_centre_mm
-from hpn.engine.members import MOST_CONVEX, Members, moving_of
+from hpn.engine.input_arrays import CURVE, InputArrays
+from hpn.engine.members import MOST_CONVEX, members_of
 from hpn.engine.motor_torques import known_efficiency, leaves_curve
 from hpn.engine.notice import AREAS, Notice, notice
 from hpn.physics.equations import ROUNDING, FloatArray
 from hpn.physics.motion.mechanisms import Linear
-from hpn.words.wording import Sentence
+from hpn.words.wording import Sentence, first_of
 
 
 def notices_of(application: Application, evaluation: Evaluation, index: int) -> tuple[Notice, ...]:
-    """Notices on an application, which is number `index` of an evaluation; the most general ones last."""
+    """Notices on application `index` of an evaluation, the most general ones last."""
     notices: list[Notice] = []
     if application.application_area is not None:
         notices.append(notice("application_area", area=AREAS[application.application_area]))
@@ -41,14 +42,14 @@ def notices_of(application: Application, evaluation: Evaluation, index: int) -> 
 
 
 ADDED_AT_MOTOR = frozenset(("motor_losses_included", "motor_inertia_included", "motor_all_included"))
-"""Codes of the notices on motor torques that are no quotient of the load's torque."""
+"""Codes of the notices on motor torques that are more than a quotient of the load's torque."""
 
 ON_MOTOR_TORQUES = ADDED_AT_MOTOR | {"motor_torque_partial"}
-"""Codes of the notices on what the motor torques include; a selection that asks about a motor has one of them."""
+"""Codes of the notices on the contents of motor torques; a selection with a motor has one of them."""
 
 
 def on_motor_torques(notices: Iterable[Notice]) -> Sentence:
-    """Sentence on what the motor torques of a selection include, which holds without a notice on them too."""
+    """Sentence on the contents of a selection's motor torques; holds also without such a notice."""
     first = (one for one in notices if one.code in ON_MOTOR_TORQUES)
     return next(first, notice("motor_torque_partial")).sentence
 
@@ -67,9 +68,9 @@ def _on_the_motion(cycle: DutyCycle) -> Iterable[Notice]:
 def _on_tolerances(application: Application, evaluation: Evaluation) -> Iterable[Notice]:
     if not application.tolerances or application.duty_cycle.motion is None:
         return
-    moving = moving_of(application.intervals)
-    if moving and not Members(application, evaluation.catalogue, [], moving).is_fixed:
-        yield notice("tolerances_of_motion_sampled", count=str(len(moving)), most=str(MOST_CONVEX))
+    members = members_of(application, evaluation.catalogue)
+    if members.moving and not members.is_fixed:
+        yield notice("tolerances_of_motion_sampled", count=str(len(members.moving)), most=str(MOST_CONVEX))
 
 
 def _on_the_shaft(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
@@ -90,23 +91,23 @@ def _on_the_shaft(application: Application, evaluation: Evaluation, index: int) 
 
 
 def _ranges(places: Sequence[int]) -> str:
-    """Numbers of places, those in a row as a range: `1, 3–5`."""
+    """Numbers of places, consecutive ones as a range: `1, 3–5`."""
     rows: list[list[int]] = []
     for place in places:
         if rows and rows[-1][-1] == place - 1:
             rows[-1].append(place)
         else:
             rows.append([place])
-    listed = [f"{row[0] + 1}" if len(row) == 1 else f"{row[0] + 1}–{row[-1] + 1}" for row in rows[:RANGES_NAMED]]
-    return ", ".join([*listed, "…"] if len(rows) > RANGES_NAMED else listed)
+    listed = [f"{row[0] + 1}" if len(row) == 1 else f"{row[0] + 1}–{row[-1] + 1}" for row in rows]
+    return first_of(listed, RANGES_NAMED)
 
 
 RANGES_NAMED = 20
-"""Ranges of phases or moves that a notice names."""
+"""Ranges of phases or moves, at most, that a notice names."""
 
 
 def _is_unlimited(figure: FloatArray, index: int) -> bool:
-    """True where a figure of an application is unlimited on some gear."""
+    """True where a figure of an application is unlimited on at least one gear."""
     return bool(np.isinf(figure[index if len(figure) > 1 else 0]).any())
 
 
@@ -118,8 +119,8 @@ def _on_stop_and_life(application: Application, evaluation: Evaluation, index: i
     if application.emergency_stop is not None and application.emergency_stop.count is None:
         yield notice("stops_not_counted")
     first = evaluation.order.item(index, 0)
-    said = figures.stops.said_of(application, index, first, evaluation.gears.rows[first].designation)
-    yield from (notice(code, **values) for code, values in said)
+    sentence = figures.stops.sentence_on(application, index, first, evaluation.gears.rows[first].designation)
+    yield from (notice(code, **values) for code, values in sentence)
     if _is_unlimited(figures.momentary_peak_count, index):
         yield notice("momentary_peak_count_unlimited")
     if _is_unlimited(figures.life_L10_h, index):
@@ -128,7 +129,7 @@ def _on_stop_and_life(application: Application, evaluation: Evaluation, index: i
 
 def _on_stiffness(application: Application, evaluation: Evaluation, index: int) -> Iterable[Notice]:
     duty, best = evaluation.case.duty, evaluation.order.item(index, 0)
-    if np.isnan(duty.asked.load_reverses.item(index)) and duty.torque_both_ways.item(index):
+    if np.isnan(duty.inputs.load_reverses.item(index)) and duty.torque_both_ways.item(index):
         yield notice("torque_signs_not_given")
     if unsaid := _without_least_torque(application, evaluation, index):
         yield notice("torque_range_not_given", phases=_ranges(unsaid))
@@ -142,20 +143,22 @@ def _on_stiffness(application: Application, evaluation: Evaluation, index: int) 
 
 
 def _without_least_torque(application: Application, evaluation: Evaluation, index: int) -> list[int]:
-    """Places of the phases whose torque varies without a least one, but for those that have no sign on average."""
+    """Places of the phases with a varying torque and no given least torque, except those with a mean torque of 0."""
     least = evaluation.case.duty.phases.least_torque_Nm[index, 0].tolist()
     phases = enumerate(application.duty_cycle.load_phases)
     return [place for place, phase in phases if phase.least_torque_Nm is None and phase.torque_Nm and not least[place]]
 
 
 def _on_speed(evaluation: Evaluation, index: int) -> Iterable[Notice]:
-    """Suitable gears whose input runs above the permissible average speed for longer than is taken to average out."""
+    """Notice on suitable gears whose input runs above the permissible average speed for longer than the
+    averaging time.
+    """
     bound, gears, phases = evaluation.catalogue.averaging_s, evaluation.gears.columns, evaluation.case.duty.phases
-    lasting = phases.duration_s[index, 0] > 0  # what a shorter cycle is filled up with lasts no time
+    lasting = phases.duration_s[index, 0] > 0  # padding of shorter cycles has no duration
     n, t = phases.speed_rpm[index, 0][lasting], phases.duration_s[index, 0][lasting]
     if t.sum() <= bound:
         return
-    circular = not evaluation.case.asked["duty_cycle.pause_s"].item(index)
+    circular = not evaluation.case.inputs["duty_cycle.pause_s"].item(index)
     longest: dict[float, float] = {}
     for place in np.flatnonzero(evaluation.verdict[index] == SUITABLE).tolist():
         i = gears.ratio.item(place)
@@ -168,18 +171,20 @@ def _on_speed(evaluation: Evaluation, index: int) -> Iterable[Notice]:
 
 
 def _longest_run(above: NDArray[np.bool_], duration_s: FloatArray, *, circular: bool) -> float:
-    """Longest time on end of the phases that are above; without a pause the cycle's end runs into its start."""
+    """Longest uninterrupted time in s of the phases above; without a pause the cycle's end runs into its start."""
     if above.all() or not above.any():
         return float(duration_s.sum()) if above.any() else 0.0
     if circular:
-        start = int(np.argmin(above))  # a phase below, so that no run goes round the end
+        start = int(np.argmin(above))  # a phase below, so that no run crosses the end
         above, duration_s = np.roll(above, -start), np.roll(duration_s, -start)
     ends = np.flatnonzero(~above)
     return max(float(part.sum()) for part in np.split(np.where(above, duration_s, 0.0), ends))
 
 
 def _on_unused_loads(load: OutputLoad, cycle: DutyCycle) -> Iterable[Notice]:
-    """Loads of the whole cycle beside which every phase has its own, another one in some."""
+    """Notices on loads of the whole cycle that go unused because every phase has its own, with a different one
+    in some.
+    """
     for direction in ("radial", "axial"):
         whole, own = getattr(load, f"{direction}_N"), [getattr(phase, f"{direction}_N") for phase in cycle.load_phases]
         if whole is not None and None not in own and set(own) != {whole}:
@@ -190,7 +195,7 @@ def _on_the_bearing(load: OutputLoad, evaluation: Evaluation, index: int) -> Ite
     yield notice("bearing_envelope_supplied" if load.model == "digitised" else "bearing_envelope_computed")
     if load.model == "iso281":
         yield notice("bearing_iso281")
-    asked_h = evaluation.case.asked["requirements.life_h"].item(index)
+    asked_h = evaluation.case.inputs["requirements.life_h"].item(index)
     if not np.isnan(asked_h) and (load.life_h, load.life_basis) == (BEARING_LIFE_H, "L50"):
         yield notice("bearing_life_at_default", gear_life_h=asked_h, bearing_life_h=load.life_h)
     yield from _on_the_lever(load, evaluation, index)
@@ -222,7 +227,7 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
         if left:
             yield notice("efficiency_beyond_curve", names=", ".join(left))
     if requirements.motor is not None or application.rank_by == "motor_torque":
-        included = not np.isnan(evaluation.case.asked["requirements.motor.inertia_kgm2"].item(index))
+        included = not np.isnan(evaluation.case.inputs["requirements.motor.inertia_kgm2"].item(index))
         moving = application.duty_cycle.motion is not None
         gears = evaluation.gears.columns
         has_inertia, has_losses = (
@@ -232,11 +237,13 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
             yield notice("motor_all_included" if has_inertia and has_losses else "motor_inertia_included")
         else:
             yield notice("motor_losses_included" if has_losses else "motor_torque_partial")
+            if not np.isnan(evaluation.case.inputs[CURVE].item(index)):
+                yield notice("rotor_not_included")
 
 
 def _on_the_torque_limit(evaluation: Evaluation, index: int) -> Iterable[Notice]:
-    """Notices on the drive's torque limit: of the first candidate, and on the efficiency behind those of all."""
-    figures, inputs, best = evaluation.case.figures, evaluation.case.asked, evaluation.order.item(index, 0)
+    """Notices on the drive's torque limit of the first candidate, and on the efficiency behind all limits."""
+    figures, inputs, best = evaluation.case.figures, evaluation.case.inputs, evaluation.order.item(index, 0)
     limits = figures.motor_torque_limit_Nm[index]
     without = np.isnan(known_efficiency(evaluation.gears, evaluation.catalogue)) & ~np.isnan(limits)
     if np.isnan(inputs["requirements.efficiency"].item(index)) and without.any():
@@ -245,14 +252,20 @@ def _on_the_torque_limit(evaluation: Evaluation, index: int) -> Iterable[Notice]
         evaluation.gears.rows[best],
         limit_Nm=limits.item(best),
         need_Nm=figures.motor_peak_torque_Nm[index].item(best),
-        peak_Nm=inputs["requirements.motor.peak_torque_Nm"].item(index),
+        peak_Nm=largest_torque_Nm(inputs, index),
     )
 
 
-def on_torque_limit(gear: Gear, *, limit_Nm: float, need_Nm: float, peak_Nm: float) -> Iterable[Notice]:
-    """Notices on a gear whose torque limit η T_R / i the motor's peak torque or the need of the cycle is above.
+def largest_torque_Nm(inputs: InputArrays, index: int) -> float:
+    """Peak torque of a motor in Nm, else the largest of its curve, else NaN."""
+    peak, curve = inputs["requirements.motor.peak_torque_Nm"].item(index), inputs.motor_curves[index, 0]
+    return float(curve.peak_Nm.max()) if np.isnan(peak) and curve is not None else float(peak)
 
-    NaN stands for a torque that is not known.
+
+def on_torque_limit(gear: Gear, *, limit_Nm: float, need_Nm: float, peak_Nm: float) -> Iterable[Notice]:
+    """Notices on a gear whose torque limit η T_R / i is below the motor's peak torque or the need of the cycle.
+
+    NaN stands for an unknown torque.
     """
     if peak_Nm > limit_Nm * (1 + ROUNDING):
         T_R, T_M = gear.repeated_peak_torque_Nm or np.nan, gear.momentary_peak_torque_Nm or np.nan
@@ -267,7 +280,7 @@ def on_torque_limit(gear: Gear, *, limit_Nm: float, need_Nm: float, peak_Nm: flo
 
 @lru_cache(maxsize=256)
 def _unrated(gears: GearList, catalogue: Catalogue) -> tuple[Notice, ...]:
-    """A notice per size with gears that aren't rated; it names them where a supplement rates others of the size."""
+    """One notice per size with unrated gears; it names the gears where a supplement rates others of the size."""
     rated = {gear.name for gear in catalogue.gears if gear.rated_torque_Nm is not None}
     unrated: dict[str, list[Gear]] = {}
     for gear in gears.rows:

@@ -16,20 +16,20 @@ from hpn.engine.allowed import gears_for
 from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import STATUS, SUITABLE, UNRATED, UNSUITABLE, BoolArray, PlaceArray, Status
 from hpn.engine.motor_torques import inertia_ratio
-from hpn.engine.motors import LOADS, asks_inertia_ratio, with_figures, with_motors
+from hpn.engine.motors import LOADS, with_figures, with_motors
 from hpn.engine.notice import Notice
 from hpn.engine.pair_notices import notices_on
 from hpn.physics.equations import ROUNDING, FloatArray, tied
-from hpn.words.reply import Reply
+from hpn.words.reply import Reply, finite
 from hpn.words.wording import N_, Sentence
 
 RESONANCE = "drive_resonance"
-"""Code of the check of the least resonance, which pairs alone have."""
+"""Code of the check of the least resonance, which only pairs have."""
 
 CODES = (*(check.code for check in CHECKS), RESONANCE)
 
 AT_ONCE = 500
-"""Motors that are evaluated together: their arrays stay within some 50 MB."""
+"""Motors that are evaluated together, so that their arrays stay within some 50 MB."""
 
 
 class Pair(Reply, frozen=True):
@@ -40,16 +40,16 @@ class Pair(Reply, frozen=True):
     motor: Annotated[str, Field(description="Designation of the motor.")]
     status: Annotated[Status, Field(description="Verdict of all checks, as in `POST /api/v1/select` with this motor.")]
     utilisation: Annotated[
-        float | None, Field(description="Largest utilisation of gear and motor; null where it has no number.")
+        float | None, Field(description="Largest utilisation of gear and motor; null where it is not a number.")
     ]
     governing_check: Annotated[
-        str | None, Field(description="Check that has it; `drive_resonance` for the least resonance.")
+        str | None, Field(description="Check with that utilisation; `drive_resonance` for the least resonance.")
     ]
     motor_utilisation: Annotated[
         float | None, Field(description="Largest utilisation of the motor’s load checks; null where none is known.")
     ]
     thermal: Annotated[
-        float | None, Field(description="RMS torque over the rated torque; null where that is not known.")
+        float | None, Field(description="RMS torque over the rated torque; null where the rated torque is not known.")
     ]
     inertia_ratio: Annotated[
         float | None, Field(description="(J_L / i² + J_g) / J_m; null where an inertia is not known.")
@@ -60,10 +60,13 @@ class Pair(Reply, frozen=True):
     motor_torque_limit_Nm: Annotated[
         float | None, Field(description="Torque η T_R / i to set in the drive; null where T_R is not published.")
     ]
-    weight_kg: Annotated[float | None, Field(description="Weight of gear and motor; null where one is not known.")]
+    weight_kg: Annotated[float | None, Field(description="Weight of gear and motor; null where a weight is not known.")]
     link: Annotated[
         str | None,
-        Field(description="Page of the gear with this motor’s figures in the application; null where it is too long."),
+        Field(
+            description="Page of the gear with this motor’s figures in the application; null where the address is too "
+            "long."
+        ),
     ]
 
 
@@ -77,7 +80,7 @@ class Pairs(Reply, frozen=True):
 
 @dataclass(frozen=True, eq=False)
 class PairTable:
-    """Figures of M motors on G gears, each of shape (M, G); NaN is not known.
+    """Figures of M motors on G gears, each of shape (M, G); NaN if unknown.
 
     `verdict` are places in STATUS, `governing` in CODES.
     """
@@ -123,9 +126,13 @@ class PairTable:
 
     def rejected(self) -> PlaceArray:
         """Pairs that fail, the nearest miss first, and those that are not rated."""
-        fails = self._sorted(self.utilisation.ravel(), self.verdict.ravel() == UNSUITABLE)
+        fails = self._sorted(self.utilisation.ravel(), self.fails)
         unrated = self._sorted(np.zeros(self.verdict.size), self.verdict.ravel() == UNRATED)
         return np.concatenate((fails, unrated))
+
+    def best_of_motors(self, order: PlaceArray) -> PlaceArray:
+        """The first pair of each motor, in the same order."""
+        return order[np.sort(np.unique(order // len(self.gears.rows), return_index=True)[1])]
 
     def failing(self) -> dict[str, int]:
         """Number of pairs that fail, by governing check, in the order of the checks."""
@@ -143,7 +150,7 @@ def _places_of(names: Sequence[str]) -> PlaceArray:
 def table_of(
     application: Application, motors: Sequence[MotorEntry], catalogue: Catalogue, least_Hz: float | None = None
 ) -> PairTable:
-    """Figures of every motor on every gear that the application allows; raises InputError as `select` does."""
+    """Figures of every motor on every allowed gear; raises InputError as `select` does."""
     if application.requirements.over_tolerance:
         place = ("requirements", "over_tolerance")
         raise InputError((place, Sentence(N_("pairs are judged as given: leave it out or say false"))))
@@ -172,8 +179,8 @@ def _part(
         evaluation.used[codes.index(code)] if code in codes else np.array(np.nan)
         for code in ("motor_rated_torque", "motor_peak_torque")
     )
-    inertia = evaluation.case.asked["requirements.motor.inertia_kgm2"]
-    weights = np.array([[np.nan if motor.weight_kg is None else motor.weight_kg] for motor in motors])
+    inertia = evaluation.case.inputs["requirements.motor.inertia_kgm2"]
+    weights = np.array([[motor.weight_kg] for motor in motors], dtype=np.float64)
     resonance = np.broadcast_to(figures.drive_resonance_Hz, shape)
     governing = np.array([CODES.index(code) for code in codes])[evaluation.governing]
     judged = evaluation.verdict.astype(np.intp), evaluation.utilisation, governing
@@ -190,7 +197,7 @@ def _part(
 def _with_resonance(
     verdict: PlaceArray, utilisation: FloatArray, governing: PlaceArray, used: FloatArray
 ) -> tuple[PlaceArray, FloatArray, PlaceArray]:
-    """Verdicts where the least resonance counts too, as a property check and the last of all."""
+    """Verdicts, utilisations and governing checks with the least resonance as a property check and the last of all."""
     fails, unknown = used > 1 + ROUNDING, np.isnan(used)
     leads = fails & ~(utilisation * (1 + ROUNDING) >= used)
     lacking = unknown & (verdict == SUITABLE)
@@ -210,16 +217,15 @@ def pairs_of(
     *,
     failing: bool = False,
 ) -> Pairs:
-    """The first pairs of a request, or of those that are not suitable; `link_of` takes application and gear."""
+    """The first pairs of a request, suitable or failing; `link_of` takes application and gear."""
     table = table_of(wanted.application, motors, catalogue, wanted.drive_resonance_Hz)
     order = table.rejected() if failing else table.ranked(wanted.rank_by)
     if wanted.best_of == "motor":
-        order = order[np.sort(np.unique(order // len(table.gears.rows), return_index=True)[1])]
-    needs_inertia = asks_inertia_ratio(wanted.application) or wanted.drive_resonance_Hz is not None
+        order = table.best_of_motors(order)
     return Pairs(
         pairs=list(pairs_at(table, order[: wanted.top].tolist(), wanted.application, link_of)),
         failing=table.failing(),
-        notices=tuple(notices_on(wanted.application, motors, table.gears, catalogue, needs_inertia=needs_inertia)),
+        notices=tuple(notices_on(wanted.application, motors, table.gears, catalogue, wanted.drive_resonance_Hz)),
     )
 
 
@@ -238,18 +244,13 @@ def pairs_at(
             designation=gear.designation,
             motor=motor.designation,
             status=STATUS[verdict],
-            utilisation=_figure(table.utilisation, place),
+            utilisation=finite(table.utilisation.item(place)),
             governing_check=None if verdict == UNRATED else CODES[table.governing.item(row, column)],
-            motor_utilisation=_figure(table.of_motor, place),
-            thermal=_figure(table.thermal, place),
-            inertia_ratio=_figure(table.inertia_ratio, place),
-            drive_resonance_Hz=_figure(table.resonance_Hz, place),
-            motor_torque_limit_Nm=_figure(table.limit_Nm, place),
-            weight_kg=_figure(table.weight_kg, place),
+            motor_utilisation=finite(table.of_motor.item(place)),
+            thermal=finite(table.thermal.item(place)),
+            inertia_ratio=finite(table.inertia_ratio.item(place)),
+            drive_resonance_Hz=finite(table.resonance_Hz.item(place)),
+            motor_torque_limit_Nm=finite(table.limit_Nm.item(place)),
+            weight_kg=finite(table.weight_kg.item(place)),
             link=link_of(equipped[row], gear.designation),
         )
-
-
-def _figure(column: FloatArray, place: int) -> float | None:
-    value = column.item(place)
-    return value if np.isfinite(value) else None

@@ -1,6 +1,6 @@
 """From an application and the catalogue to a ranked list of candidates, each with its checks and a reason.
 
-A `Selection` is the reply: what the API encodes as JSON, what pages and files read, what a saved reply decodes to.
+A `Selection` is the reply: the API encodes it as JSON, pages and files read it, a saved reply decodes to it.
 """
 
 from collections.abc import Callable
@@ -17,8 +17,9 @@ from hpn import ENGINE_VERSION
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.engine.allowed import gears_for, gears_left_out, with_listed_motor
+from hpn.engine.alone import Alone
 from hpn.engine.candidates import Candidate, candidates_of
-from hpn.engine.check import Check, Group, Kind
+from hpn.engine.check import Group, Kind
 from hpn.engine.checks import BY_CODE, name_of
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, UNRATED, Evaluation, evaluate
@@ -31,7 +32,7 @@ from hpn.words.reply import Reply, described
 
 
 class PhaseFigures(Reply, frozen=True, omit_defaults=True):
-    """A load phase that comes out of a motion, as one is typed."""
+    """A load phase that results from a motion, in the form of a typed phase."""
 
     __pydantic_config__ = described(PHASE)
 
@@ -48,7 +49,7 @@ class PhaseFigures(Reply, frozen=True, omit_defaults=True):
 
 
 class DutyFigures(Reply, frozen=True, omit_defaults=True):
-    """Figures of the duty cycle; with phases and inertia for a motion."""
+    """Figures of the duty cycle; for a motion, with its phases and inertia."""
 
     __pydantic_config__ = described(DUTY)
 
@@ -66,7 +67,7 @@ class CheckDefinition(Reply, frozen=True):
     """Properties of a check that are the same for every candidate; `Check` explains the fields."""
 
     title: Annotated[str, Field(description="Name of the check.")]
-    equation: Annotated[str | None, Field(description="Number of the handbook’s equation, where it has one.")]
+    equation: Annotated[str | None, Field(description="Number of the handbook’s equation, if any.")]
     unit: Annotated[str, Field(description="Unit of demand and limit; empty for a pure number.")]
     kind: Annotated[Kind, Field(description="Kind of limit: maximum or minimum of the demand.")]
     group: Annotated[
@@ -74,7 +75,7 @@ class CheckDefinition(Reply, frozen=True):
         Field(description="Load checks count in the candidate’s utilisation; property checks only where they fail."),
     ]
     limit_name: Annotated[str, Field(description="Symbol of the limit.")] = ""
-    source: Annotated[str, Field(description="Where the limit comes from.")] = ""
+    source: Annotated[str, Field(description="Source of the limit.")] = ""
     tests: Annotated[str, Field(description="Condition that is checked.")] = ""
     consequence: Annotated[str, Field(description="Consequence of exceeding the limit.")] = ""
     basis: Annotated[str, Field(description="Basis of the limit.")] = ""
@@ -101,24 +102,24 @@ class Selection(Reply, frozen=True):
     tolerance: (
         Annotated[
             Room | None,
-            Field(description="The selected gear over the tolerances, if given; null where none is selected."),
+            Field(description="The selected gear over the tolerances, if given; null without a selected gear."),
         ]
         | UnsetType
     ) = UNSET
 
     @property
     def foremost(self) -> Candidate:
-        """The selected gear, else the first that is judged or lacks an input alone, if any does."""
+        """The selected gear, else the first one that is judged or only lacks an input, else the first."""
         return next((one for one in self.candidates if one.is_judged or one.missing), self.candidates[0])
 
     def name_of(self, code: str) -> str:
-        """Name of a check as it stands inside a sentence; the title of one of another version."""
+        """Name of a check inside a sentence; for a check of another version its title."""
         titled = code not in BY_CODE and code in self.check_definitions
         return self.check_definitions[code].title if titled else name_of(code)
 
     @property
     def adds_at_motor(self) -> bool:
-        """True where inertia or no-load torque counts in all motor torques, as a notice says."""
+        """True where inertia or no-load torque counts in all motor torques, according to a notice."""
         return any(notice.code in ADDED_AT_MOTOR for notice in self.notices)
 
     def candidate(self, designation: str) -> Candidate | None:
@@ -127,13 +128,13 @@ class Selection(Reply, frozen=True):
 
 
 encode = msgspec.json.Encoder().encode
-"""JSON of a selection; NaN and infinity, which stand for unpublished and unlimited, become null."""
+"""JSON of a selection; NaN (unpublished) and infinity (unlimited) become null."""
 
 
 class Outcome(NamedTuple):
-    """One line of a batch: the selected gear, how close it is to its limits, and how many gears are suitable.
+    """One line of a batch: the selected gear, its utilisation and governing check, and the number of suitable gears.
 
-    `holds` and the worst case are those of the selected gear over the tolerances, UNSET without any.
+    `holds` and the worst case are those of the selected gear over the tolerances, UNSET without tolerances.
     """
 
     selected: str | None
@@ -146,7 +147,7 @@ class Outcome(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class Judgement:
     """An application on its gears: number `index` of an evaluation."""
 
     application: Application
@@ -166,7 +167,7 @@ class Judged:
         return Outcome(evaluation.gears.rows[best].designation, check.code, used, suitable, *worst)
 
     def worst_of(self, gear: int) -> tuple[bool | None, float | None, str | None]:
-        """True where a gear holds over the whole tolerance, and its worst case; None without tolerances."""
+        """True where a gear holds over its whole tolerance, and its worst case; None without tolerances."""
         if self.evaluation.worst is None or not self.application.tolerances:
             return None, None, None
         judged, index = self.evaluation.worst.evaluation, self.index
@@ -177,13 +178,13 @@ class Judged:
     def selection(
         self, link_of: Callable[[Application], str] | None = None, samples: int = 0, *, with_room: bool = True
     ) -> Selection:
-        """The answer in full, with the links that a function gives and a share of so many points of the tolerances.
+        """The answer in full, with links from `link_of` and the failing share of `samples` points of the tolerances.
 
         The room over the tolerances takes longer than the rest, and may be left out.
         """
         evaluation, index = self.evaluation, self.index
         candidates = tuple(candidates_of(evaluation, index))
-        checks = tuple(evaluation.checks[place].code for place in evaluation.asked_by(index))
+        checks = tuple(evaluation.checks[place].code for place in evaluation.places_of(index))
         return Selection(
             engine_version=ENGINE_VERSION,
             catalogue_version=evaluation.catalogue.version,
@@ -197,19 +198,19 @@ class Judged:
         )
 
     def _room(self, first: Candidate, link_of: Callable[[Application], str], samples: int) -> Room | UnsetType | None:
-        """Room of the selected gear over the tolerances."""
+        """Room of the selected gear over the tolerances; UNSET without tolerances, None without a selected gear."""
         if not self.application.tolerances:
             return UNSET
         if first.status != "suitable":
             return None
         catalogue = self.evaluation.catalogue
-        gear, equipped = catalogue.by_designation[first.designation], with_listed_motor(self.application, catalogue)
-        return room_of(self.application, equipped, gear, catalogue, link_of, samples)
+        gear = catalogue.by_designation[first.designation]
+        return room_of(Alone.of(self.application, gear, catalogue), link_of, samples)
 
     def left_out(self) -> tuple[Candidate, ...]:
-        """Candidates that the ratios and sizes asked for leave out, judged alike and without rank.
+        """Candidates outside the requested ratios and sizes, judged alike and without rank.
 
-        They are of an application that is judged alone.
+        The application must be judged alone.
         """
         catalogue, duty = self.evaluation.catalogue, self.evaluation.case.duty
         gears = gears_left_out(self.evaluation.gears, catalogue)
@@ -223,18 +224,26 @@ def select(
     link_of: Callable[[Application], str] | None = None,
     samples: int = 0,
 ) -> Selection:
-    """Evaluate every gear that the application allows, and rank them; the reply has the links that a function gives.
+    """Evaluate and rank every gear that the application allows; the reply has links from `link_of`.
 
-    Raises InputError for a ratio or size that the catalogue lacks, for a combination that leaves no gear, and for the
-    digitised bearing model where no candidate has curve points.
+    Raises InputError for a ratio or size that the catalogue lacks, for a combination without a gear, and for the
+    digitised bearing model without a candidate that has curve points.
     """
     return judge(application, catalogue).selection(link_of, samples)
 
 
-def judge(application: Application, catalogue: Catalogue) -> Judged:
-    """Evaluation of an application before the reply is put together; raises as `select` does."""
+def with_gear(selection: Selection, application: Application, catalogue: Catalogue, designation: str) -> Selection:
+    """The selection, with a gear beyond its ratios and sizes added as the last candidate."""
+    if not designation or selection.candidate(designation) is not None:
+        return selection
+    beyond = [each for each in judge(application, catalogue).left_out() if each.designation == designation]
+    return msgspec.structs.replace(selection, candidates=(*selection.candidates, *beyond))
+
+
+def judge(application: Application, catalogue: Catalogue) -> Judgement:
+    """Evaluation of an application, from which the reply is made; raises as `select` does."""
     gears, equipped = gears_for(application, catalogue), with_listed_motor(application, catalogue)
-    return Judged(application, with_worst([application], evaluate(Duty.of([equipped]), gears, catalogue)))
+    return Judgement(application, with_worst([application], evaluate(Duty.of([equipped]), gears, catalogue)))
 
 
 def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyFigures:
@@ -248,8 +257,5 @@ def _duty(application: Application, evaluation: Evaluation, index: int) -> DutyF
 
 @lru_cache(maxsize=1024)
 def _definitions(codes: tuple[str, ...]) -> dict[str, CheckDefinition]:
-    return {code: _definition(BY_CODE[code]) for code in codes}
-
-
-def _definition(check: Check) -> CheckDefinition:
-    return CheckDefinition(*(getattr(check, name) for name in CheckDefinition.__struct_fields__))
+    names = CheckDefinition.__struct_fields__
+    return {code: CheckDefinition(*(getattr(BY_CODE[code], name) for name in names)) for code in codes}

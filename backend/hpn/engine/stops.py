@@ -1,4 +1,4 @@
-"""Emergency stops by the brake on gears: torque, time, angle and energy, and how hard the brake may be."""
+"""Emergency stops by the brake on gears: torque, time, angle and energy, and the brake's largest torque."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ from hpn.physics.stiffness import ARCMIN_PER_RAD
 
 @dataclass(frozen=True, eq=False)
 class Stops:
-    """Stops of N applications on G gears, each figure broadcasting to (N, G); NaN where no brake is given.
+    """Stops of N applications on G gears, each figure broadcasting to (N, G); NaN without a brake.
 
-    `motor_inertia_kgm2`, with the gear's own at the input, is that of the figures.
+    `motor_inertia_kgm2` includes the gear's own inertia at the input.
     """
 
     duty: Duty
@@ -29,10 +29,10 @@ class Stops:
 
     @cached_property
     def brake(self) -> stop.BrakeFigures:
-        """The brake, and what it stops."""
-        stated = self.duty.asked["requirements.efficiency"]
+        """The brake with the inertias that it stops."""
+        stated = self.duty.inputs["requirements.efficiency"]
         return stop.BrakeFigures(
-            torque_Nm=self.duty.asked["emergency_stop.brake.torque_Nm"],
+            torque_Nm=self.duty.inputs["emergency_stop.brake.torque_Nm"],
             ratio=self.gears.ratio,
             motor_inertia_kgm2=self.motor_inertia_kgm2,
             load_inertia_kgm2=self.duty.load_inertia_kgm2,
@@ -51,18 +51,18 @@ class Stops:
 
     @property
     def dynamic_factor(self) -> FloatArray:
-        """The user's own dynamic factor f; NaN where none is given. [-]"""
-        return self.duty.asked["emergency_stop.brake.dynamic_factor"]
+        """The user's own dynamic factor f; NaN without one. [-]"""
+        return self.duty.inputs["emergency_stop.brake.dynamic_factor"]
 
     @cached_property
     def torque_Nm(self) -> FloatArray:
-        """Torque T_k in Nm that the gear does not exceed."""
+        """Torque T_k of a stop on the gear in Nm; an upper bound, except by the user's own dynamic factor."""
         return stop.stop_torque(brake=self.brake, load=self.load, gear=self.play, dynamic_factor=self.dynamic_factor)
 
     @cached_property
     def course(self) -> stop.Stop:
-        """Time, angle and energy that no stop exceeds."""
-        inputs = self.duty.asked
+        """Upper bounds of a stop's time, angle and energy."""
+        inputs = self.duty.inputs
         return stop.course_of_stop(
             brake=self.brake,
             load=self.load,
@@ -87,7 +87,7 @@ class Stops:
     def largest_brake_torque_Nm(self, permissible_torque_Nm: FloatArray) -> FloatArray:
         """Largest torque T_B of the brake in Nm at which no stop exceeds a permissible torque of the gear.
 
-        0 where none both keeps to it and stops the load; NaN where the torque is not published.
+        0 if no such torque stops the load; NaN if the permissible torque is not published.
         """
         return stop.largest_brake_torque(
             brake=self.brake,
@@ -98,9 +98,9 @@ class Stops:
         )
 
     def largest_load_inertia_kgm2(self, permissible_torque_Nm: FloatArray) -> FloatArray:
-        """Largest inertia of the load in kg m² with which no stop exceeds a permissible torque of the gear.
+        """Largest inertia of the load in kg m² at which no stop exceeds a permissible torque of the gear.
 
-        Infinite without a limit, NaN where the brake does not hold the load or an inertia is not known.
+        Infinite without a limit; NaN where the brake does not hold the load, or an inertia is unknown.
         """
         return stop.largest_load_inertia(
             brake=self.brake,
@@ -110,10 +110,10 @@ class Stops:
             permissible_torque_Nm=permissible_torque_Nm,
         )
 
-    def said_of(
+    def sentence_on(
         self, application: Application, index: int, first: int, name: str
     ) -> Iterator[tuple[str, dict[str, float | str]]]:
-        """Codes and values of the notices on the stops of application `index` by its brake.
+        """Yield codes and values of the notices on the stops of application `index` by its brake.
 
         `first` is the place of its first candidate, `name` its designation.
         """
@@ -123,7 +123,7 @@ class Stops:
         if np.isnan(self.duty.load_inertia_kgm2.item(index)) or np.isnan(self.motor_inertia_kgm2[index]).all():
             yield "brake_inertia_unknown", {}
         yield "brake_bound" if brake.dynamic_factor is None else "brake_factor_typed", {}
-        if np.isnan(self.duty.asked["requirements.efficiency"].item(index)):
+        if np.isnan(self.duty.inputs["requirements.efficiency"].item(index)):
             yield "brake_efficiency_unknown", {}
         if index not in self.duty.stopped_loads:
             pulled = brake.load_torque_Nm is not None or brake.opposing_torque_Nm is not None
@@ -138,6 +138,6 @@ class Stops:
 
     @property
     def hardest_rad_per_s2(self) -> FloatArray:
-        """Deceleration (T_k + T_o) / J of the load in rad/s² that no stop exceeds, shape (N, G)."""
+        """Upper bound (T_k + T_o) / J of the load's deceleration in rad/s², shape (N, G)."""
         hardest: FloatArray = (self.torque_Nm + self.load.opposing_Nm) / self.duty.load_inertia_kgm2
         return hardest

@@ -1,4 +1,4 @@
-"""Verdict on a gear over the whole tolerance, in words."""
+"""Verdict on a gear over its whole tolerance, in words."""
 
 from hpn.engine.candidates import Candidate, WorstCase
 from hpn.engine.checks import BY_CODE, name_of

@@ -1,49 +1,94 @@
-"""Applications changed as a remedy says, with its figures as the words print them, and what of it is needed."""
+"""Applications changed by a remedy, with its figures as printed, and the changes that are needed."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any, overload
 
 from hpn.application import LISTED_FIGURES, Application, DutyCycle, EmergencyStop, Requirements
 from hpn.application.motion import Motion
 from hpn.application.phase import Phase
-from hpn.application.tolerances import Tolerances
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import with_listed_motor
-from hpn.engine.candidates import Candidate
+from hpn.engine.candidates import Candidate, candidates_of
 from hpn.engine.duty import Duty
 from hpn.engine.evaluation import SUITABLE, evaluate
-from hpn.engine.remedy import DIGITS, Alternative, Requirement, Way, alternatives_of, in_order, parts_less
+from hpn.engine.remedy import DIGITS, Alternative, Requirement, Way, alternatives_of, in_order, parts_less, slowing_of
 from hpn.physics.equations import ROUNDING
 from hpn.physics.stiffness import ARCMIN_PER_RAD
 from hpn.words.wording import Quantity, rounded
 
 
 def needed_of(candidate: Candidate, application: Application, catalogue: Catalogue) -> tuple[Alternative, ...]:
-    """Alternatives that each make a rejected gear suitable, without a change that the others make needless.
+    """Alternatives that each make a rejected gear suitable, without needless changes.
 
-    Less torque may mend a position error, and less inertia an inertia ratio, which then need no change of their own. A
-    length that is asked for is answered as one. Those with the fewest changes come first.
+    Less torque may also mend a position error, and less inertia an inertia ratio, which then need no change of their
+    own. A limit asked for as a length is answered as a length. Those with the fewest changes come first.
     """
     if application.requirements.over_tolerance and application.tolerances:
-        return ()  # they are of the values as given
-    requirements, gears = application.requirements, catalogue.listed([catalogue.by_designation[candidate.designation]])
-    remedies = []
-    for proposed in alternatives_of(candidate, requirements.utilisation):
-        one = replace(proposed, requirements=tuple(_as_asked(limit, requirements) for limit in proposed.requirements))
-        while less := next((less for less in parts_less(one) if _fits(application, less, gears, catalogue)), None):
-            one = less
-        if not _is_bounded(application, candidate) or _fits(application, one, gears, catalogue):
-            remedies.append(one)
+        return ()  # remedies refer to the values as given
+    gears = catalogue.listed([catalogue.by_designation[candidate.designation]])
+
+    @cache
+    def fits(alternative: Alternative) -> bool:
+        return _fits(application, alternative, gears, catalogue)
+
+    closed = alternatives_of(candidate, application.requirements.utilisation)
+    remedies = list(_verified(closed, candidate, application, fits))
+    if not remedies:
+        remedies = list(
+            _verified(_slower(candidate, application, gears, catalogue, fits), candidate, application, fits)
+        )
     return in_order(remedies)
 
 
-def _is_bounded(application: Application, candidate: Candidate) -> bool:
-    """True where phases that take a motion's place are a bound of it, with which a change that suffices may not.
+Fits = Callable[[Alternative], bool]
 
-    The largest dry friction stands for each rest, and all of the load drives in a stop that its brake may not hold.
+
+def _verified(
+    proposed: Iterable[Alternative], candidate: Candidate, application: Application, fits: Fits
+) -> Iterator[Alternative]:
+    """Yield the alternatives that suffice, without needless changes."""
+    for one in proposed:
+        requirements = tuple(_as_asked(limit, application.requirements) for limit in one.requirements)
+        one = replace(one, requirements=requirements)
+        while less := next(filter(fits, parts_less(one)), None):
+            one = less
+        if not _is_bounded(application, candidate) or fits(one):
+            yield one
+
+
+def _slower(
+    candidate: Candidate, application: Application, gears: GearList, catalogue: Catalogue, fits: Fits
+) -> Iterator[Alternative]:
+    """Yield alternatives with less speed beside a motor's torque curve, and what it leaves to change at that speed.
+
+    None for a rotor that takes part in a motion: slower phases would leave it out.
     """
+    u, motor = application.requirements.utilisation, application.requirements.motor
+    turns = application.duty_cycle.motion is not None and motor is not None and motor.inertia_kgm2 is not None
+    slower = Alternative(Way(speed=slowing_of(candidate, u)))
+    if motor is None or motor.curve is None or turns or slower == Alternative(Way()):
+        return
+    if fits(slower):
+        yield slower
+        return
+    duty = Duty.of([tried(application, slower, catalogue)])
+    [left] = candidates_of(evaluate(duty, gears, catalogue), 0)
+    for one in alternatives_of(left, u):
+        yield replace(one, way=replace(one.way, speed=slower.way.speed))
+
+
+def _is_bounded(application: Application, candidate: Candidate) -> bool:
+    """True where a change may not suffice, so that it must be tried.
+
+    That is where the motor's limit depends on its speed, and where phases replace a motion as a bound of it: the
+    largest dry friction is assumed in each rest, and the whole load drives in a stop that the brake may not hold.
+    """
+    motor = application.requirements.motor
+    if motor is not None and motor.curve is not None:
+        return True
     stop, motion = application.emergency_stop, application.duty_cycle.motion
     if motion is None or application.duty_cycle.rest_friction_Nm:
         return motion is not None
@@ -53,7 +98,7 @@ def _is_bounded(application: Application, candidate: Candidate) -> bool:
 
 
 def _fits(application: Application, alternative: Alternative, gears: GearList, catalogue: Catalogue) -> bool:
-    """True for an alternative with which a gear alone in its list is suitable."""
+    """True if an alternative makes the gear, alone in its list, suitable."""
     if alternative == Alternative(Way()):
         return False
     changed = with_listed_motor(tried(application, alternative, catalogue), catalogue)
@@ -61,7 +106,7 @@ def _fits(application: Application, alternative: Alternative, gears: GearList, c
 
 
 def _as_asked(limit: Requirement, requirements: Requirements) -> Requirement:
-    """The limit of a position error as a length where it is asked for as one."""
+    """The limit, a position error as a length if it is asked for as one."""
     if limit.path != POSITION_ERROR or requirements.position_error_mm is None:
         return limit
     length = limit.value.value * (requirements.position_radius_mm or 0.0) / ARCMIN_PER_RAD
@@ -70,9 +115,9 @@ def _as_asked(limit: Requirement, requirements: Requirements) -> Requirement:
 
 
 def tried(application: Application, alternative: Alternative, catalogue: Catalogue) -> Application:
-    """The application changed by an alternative, with its figures as the words print them.
+    """The application changed by an alternative, with its figures as printed.
 
-    A listed motor of which a figure changes is replaced by its figures.
+    If a figure of a listed motor changes, the motor's figures replace its name.
     """
     changed = followed(application, alternative.way)
     figures = {f"requirements.motor.{name}" for name in LISTED_FIGURES}
@@ -95,9 +140,9 @@ def _with(model: Any, path: Sequence[str], value: float | None) -> Any:
 
 
 def followed(application: Application, way: Way) -> Application:
-    """The application changed by a way, with its figures as the words print them.
+    """The application changed by a way, with its figures as printed.
 
-    A motion is replaced by its phases where their torques or speeds change, whose signs hold as those of a motion do.
+    If torques or speeds change, phases replace a motion, and their signs count as a motion's do.
     """
     torque, speed, load = (_printed(factor, 3) for factor in (way.torque, way.speed, way.load))
     cycle, stop, parts = application.duty_cycle, application.emergency_stop, dict[str, Any]()
@@ -108,7 +153,7 @@ def followed(application: Application, way: Way) -> Application:
         parts["duty_cycle"] = cycle.model_copy(update={"phases": phases, "motion": None})
         requirements = application.requirements
         if cycle.motion is None:
-            friction = _scaled(requirements.rest_friction_Nm, torque) or 0.0  # a torque of the cycle as the others are
+            friction = _scaled(requirements.rest_friction_Nm, torque) or 0.0  # a torque of the cycle like the others
             parts["requirements"] = requirements.model_copy(update={"rest_friction_Nm": friction})
         else:
             parts["requirements"] = requirements.model_copy(
@@ -116,7 +161,8 @@ def followed(application: Application, way: Way) -> Application:
             )
             stop = stop and _pulled(stop, cycle.motion)
     if cycle.motion is not None and parts["duty_cycle"].motion is None:
-        parts["tolerances"] = _without_motion(application.tolerances)
+        kept = {path: one for path, one in (application.tolerances or {}).items() if not path.startswith("motion.")}
+        parts["tolerances"] = kept or None
     if (output := application.output_load) is not None:
         loads = {name: _scaled(getattr(output, name), load) for name in LOADS}
         loads |= {"from_motion": output.from_motion and parts["duty_cycle"].motion is not None}
@@ -126,13 +172,8 @@ def followed(application: Application, way: Way) -> Application:
     return application.model_copy(update=parts)
 
 
-def _without_motion(tolerances: Tolerances | None) -> Tolerances | None:
-    """Tolerances without those of a motion that phases take the place of."""
-    return {path: one for path, one in (tolerances or {}).items() if not path.startswith("motion.")} or None
-
-
 def _of_motion(cycle: DutyCycle, motion: Motion, requirements: Requirements, torque: float) -> dict[str, float | bool]:
-    """Requirements that stand for a motion whose phases are typed, their torques by a factor."""
+    """Requirements that replace those of a motion whose phases are typed, their torques times a factor."""
     return {
         "load_inertia_kgm2": motion.load_inertia_kgm2,
         "load_reverses": bool(requirements.load_reverses),
@@ -144,17 +185,17 @@ LOADS = ("radial_N", "axial_N")
 
 
 def _loaded(motion: Motion, load: float) -> Motion:
-    """The motion with the loads of its moves by a factor."""
+    """The motion with the loads of its moves times a factor."""
     if load == 1:
         return motion
-    content = motion.model_dump(exclude_unset=True)  # validated again, since a copy would keep the phases of before
+    content = motion.model_dump(exclude_unset=True)  # validated again: a copy would keep the old phases
     for move in content["moves"]:
         move |= {name: _scaled(move[name], load) for name in LOADS if move.get(name) is not None}
     return type(motion).model_validate(content)
 
 
 def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple[Phase, ...]:
-    """Phases of a cycle with their torques, speeds and loads by factors; a mean, its peak and its RMS go together."""
+    """Phases of a cycle with torques, speeds and loads times factors; mean, peak and RMS share one factor."""
     return tuple(
         phase.model_copy(
             update={
@@ -172,7 +213,7 @@ def _driven(cycle: DutyCycle, torque: float, speed: float, load: float) -> tuple
 
 
 def _pulled(stop: EmergencyStop, motion: Motion) -> EmergencyStop:
-    """The stop with the torques of the motion's load, which its phases lack; a bound where they fall."""
+    """The stop with the torques of the motion's load, which phases lack; an upper bound where torques fall."""
     if stop.brake is None:
         return stop
     speed_rpm = stop.brake.speed_rpm or max(phase.peak_speed_rpm or 0.0 for phase in motion.phases)
@@ -183,7 +224,7 @@ def _pulled(stop: EmergencyStop, motion: Motion) -> EmergencyStop:
 
 
 def _with_shaft_loads(application: Application, phases: tuple[Phase, ...], load: float) -> tuple[Phase, ...]:
-    """Phases in place of a motion with the load of its pinion or pulley as it was, a bound where torques fall."""
+    """Phases that replace a motion, with its unchanged load of pinion or pulley, an upper bound where torques fall."""
     if not (application.output_load and application.output_load.from_motion):
         return phases
     duty = Duty.of([application])
@@ -196,7 +237,7 @@ def _with_shaft_loads(application: Application, phases: tuple[Phase, ...], load:
 
 
 def _stopped(stop: EmergencyStop, way: Way) -> EmergencyStop:
-    """The emergency stop with its largest torque, else with its largest number, else as it is."""
+    """The emergency stop with the brake's or its own largest torque, else with its largest number, else unchanged."""
     if stop.brake is not None and way.brake_torque_Nm is not None:
         brake = stop.brake.model_copy(update={"torque_Nm": _printed(way.brake_torque_Nm, DIGITS)})
         return stop.model_copy(update={"brake": brake})
@@ -217,7 +258,7 @@ def _scaled(value: float, factor: float) -> float: ...
 @overload
 def _scaled(value: float | None, factor: float) -> float | None: ...
 def _scaled(value: float | None, factor: float) -> float | None:
-    """A figure by a factor, as somebody would type it: without the last digits of floating point."""
+    """A figure times a factor, with at most 12 digits, as somebody would type it."""
     if value is None or factor == 1:
         return value
     return math.copysign(float(rounded(abs(value * factor), 12, "down")), value)

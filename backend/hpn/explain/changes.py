@@ -1,4 +1,4 @@
-"""Differences of two replies as rows of two accounts, then and today: what the comparer finds, in words and units."""
+"""Differences of two replies as rows of two accounts, then and today: the comparer's result in words and units."""
 
 import re
 from collections.abc import Mapping
@@ -9,6 +9,7 @@ from typing import Any
 from hpn.account.account import Account
 from hpn.account.lines import Line, Value
 from hpn.engine.candidates import FIGURES, reason_of
+from hpn.engine.selection import CheckDefinition
 from hpn.explain.comparison import Row, is_number
 from hpn.explain.differences import Difference
 from hpn.words.quantities import QUANTITIES
@@ -24,20 +25,20 @@ PLACES: Mapping[str, str] = {
     "/duty/phases/": "phase.",
     "/duty/": "duty.",
 }
-"""Beginnings of places in `QUANTITIES` by those of pointers without their numbers."""
+"""Prefixes of pointers without their numbers -> prefixes of places in `QUANTITIES`."""
 
 NAMES: Mapping[str, str] = {"selected": N_("Selected gear"), "text": N_("Notice")}
-"""Fields that are no quantities; any other stands with its own name."""
+"""Names of fields that are no quantities; any other field has its own name."""
 
 SHARES = ("utilisation", "torque_factor", "speed_factor", "load_factor")
-"""Fields that are read as percentages."""
+"""Fields shown as percentages."""
 
 NO_CANDIDATE = N_("no candidate")
 
 
 @dataclass(frozen=True)
 class ReplyChange:
-    """A difference of two replies as a reader sees it; the second account is None where there is no reply today."""
+    """A difference of two replies as a reader sees it; the second account is None without a reply today."""
 
     difference: Difference
     accounts: tuple[Account, Account | None]
@@ -45,32 +46,30 @@ class ReplyChange:
 
     @property
     def check(self) -> str:
-        """Title of the check that it belongs to; blank without one."""
-        code = self.difference.check or ""
-        definition = self._then.selection.check_definitions.get(code)
-        return definition.title if definition else code
+        """Title of its check; blank without one."""
+        return self._definition.title if self._definition else self.difference.check or ""
 
     @property
     def phase(self) -> int | None:
-        """Number of the load phase that it belongs to; None without one."""
+        """Number of its load phase; None without one."""
         parts = self.difference.pointer.split("/")
         return int(parts[3]) + 1 if parts[1:3] == ["duty", "phases"] else None
 
     @cached_property
     def row(self) -> Row:
-        """Both values; two texts that read alike today as each was written."""
+        """Both values; two texts that today's words would make equal stay as each was written."""
         if self._reads_alike:
             return Row(tuple(self._line(Sentence("{text}", {"text": text})) for text in self._values))
         return self._as_read
 
     @property
     def numbers(self) -> tuple[str, str]:
-        """The same without units."""
+        """Both values without units."""
         return self.row.numbers(self.reader)
 
     @property
     def is_wording(self) -> bool:
-        """True for a sentence that only reads otherwise: about a check, a notice, why a gear does not fit."""
+        """True for a text with only a new wording: about a check, a notice, or the reason why a gear does not fit."""
         if self._reads_alike:
             return True
         notices = (notice for one in self.accounts if one for notice in one.selection.notices)
@@ -80,8 +79,8 @@ class ReplyChange:
         return self.difference.change == "changed" and (of_check or (before is not None and before == after))
 
     @property
-    def _then(self) -> Account:
-        return self.accounts[0]
+    def _definition(self) -> CheckDefinition | None:
+        return self.accounts[0].selection.check_definitions.get(self.difference.check or "")
 
     @property
     def _values(self) -> tuple[Any, Any]:
@@ -99,7 +98,7 @@ class ReplyChange:
     # --- Lines --------------------------------------------------------------------------------------------------------
 
     def _line_of(self, value: Any, account: Account | None) -> Line:
-        """A value as the account of its reply has it."""
+        """A value as a line of its reply's account."""
         field, name = self.difference.field, self.difference.candidate or ""
         candidate = account.selection.candidate(name) if account else None
         if account and candidate and self._code == f"candidate.{field}" and field in FIGURES and candidate.says(field):
@@ -114,9 +113,8 @@ class ReplyChange:
     @property
     def _unit(self) -> str:
         field = self.difference.field
-        definition = self._then.selection.check_definitions.get(self.difference.check or "")
-        if definition and field in ("demand", "limit"):
-            return definition.unit
+        if self._definition and field in ("demand", "limit"):
+            return self._definition.unit
         return "%" if field in SHARES else suffix_of(field)
 
     @cached_property
@@ -133,7 +131,7 @@ class ReplyChange:
         return quantity or Named(NAMES.get(field, field))
 
     def _value(self, value: Any, account: Account | None) -> Value | None:
-        """A value as it is read; what its version kept no values of, as it was written."""
+        """A value in words; the written text if its version kept no values for it."""
         if account is None or value is None:
             is_whole = self.difference.change != "changed" and self._code == "candidate.status"
             return NO_CANDIDATE if account and is_whole else None

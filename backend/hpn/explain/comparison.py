@@ -1,6 +1,6 @@
-"""The comparer: accounts side by side, line by line, and gears that no other outdoes.
+"""The comparer: accounts side by side, line by line, and the gears that no other outdoes.
 
-Two selections of which one is today's, or two that were saved, or some gears of one selection are compared alike.
+It compares two selections, one of today or both saved, or some gears of one selection.
 """
 
 import math
@@ -25,34 +25,38 @@ from hpn.words.wording import N_
 
 MOST_PINS = 4
 TOLERANCE = 1e-12
-"""Relative tolerance, in a list to its largest value: other processors differ by less."""
+"""Relative tolerance, in a list relative to its largest value: other processors differ by less."""
 
 K = TypeVar("K")
 V = TypeVar("V")
 
 Standing = Literal["reference", "better", "alike", ""]
-"""Figure of a gear beside that of the first one, which is the reference; blank where it is worse, or merely another."""
+"""Standing of a gear's figure beside that of the first gear, the reference; blank if worse, or neither better nor
+worse.
+"""
 
 
 def is_number(value: Any) -> bool:
-    """True for a number, which a bool is not."""
+    """True for a number, but not for a bool."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def is_same(one: Any, other: Any, room: float = 0.0) -> bool:
-    """True for values that are equal, numbers to rounding: another processor has other last bits."""
+    """True for equal values, numbers within rounding: another processor has other last bits."""
     return bool(one == other or (is_number(one) and is_number(other) and _is_close(one, other, room)))
 
 
 def _is_close(one: float, other: float, room: float) -> bool:
     try:
         return math.isclose(one, other, rel_tol=TOLERANCE, abs_tol=room)
-    except OverflowError:  # an integer beyond floats, which an open axis may have
+    except OverflowError:  # an integer beyond floats, possible in an open axis
         return False
 
 
 def aligned(*sides: Mapping[K, V]) -> Iterator[tuple[K, tuple[V | None, ...]]]:
-    """Values of each side under every key, in the order of the first side and then of the next; None for nothing."""
+    """Yield the values of each side under every key, in the order of the first side and then of the next; None for a
+    missing one.
+    """
     for key in dict.fromkeys(key for side in sides for key in side):
         yield key, tuple(side.get(key) for side in sides)
 
@@ -62,7 +66,7 @@ def aligned(*sides: Mapping[K, V]) -> Iterator[tuple[K, tuple[V | None, ...]]]:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One quantity of all accounts, None where one says nothing of it; `standings` are those of gears side by side."""
+    """One quantity of all accounts, None for an account without it; `standings` are those of gears side by side."""
 
     lines: tuple[Line | None, ...]
     standings: tuple[Standing, ...] = ()
@@ -74,12 +78,12 @@ class Row:
 
     @property
     def is_lower_bound(self) -> bool:
-        """True where one of them is a lower bound."""
+        """True if one of the lines is a lower bound."""
         return any(line is not None and line.is_lower_bound for line in self.lines)
 
     @property
     def is_known(self) -> bool:
-        """True where one of them has a value."""
+        """True if one of the lines has a value."""
         return any(line is not None and line.value is not None for line in self.lines)
 
     @property
@@ -89,7 +93,7 @@ class Row:
         return not all(map(is_same, values[0], values[-1]))
 
     def numbers(self, reader: Reader) -> tuple[str, str]:
-        """The first and the last value without their unit, as they are told apart; a dash for none."""
+        """The first and the last value without their unit, with enough digits to differ; a dash for a missing one."""
         one, other = self.lines[0], self.lines[-1]
         return _number(one, other, reader), _number(other, one, reader)
 
@@ -100,7 +104,7 @@ def _number(line: Line | None, beside: Line | None, reader: Reader) -> str:
 
 @dataclass(frozen=True, slots=True)
 class CheckRow:
-    """One check of all accounts, None where it was not asked for; `standings` likewise."""
+    """One check of all accounts, None for an account without it; `standings` are those of gears side by side."""
 
     checks: tuple[CheckLine | None, ...]
     standings: tuple[Standing, ...] = ()
@@ -112,14 +116,16 @@ class CheckRow:
 
     @property
     def differs(self) -> bool:
-        """True for different results; their figures are equal to rounding."""
+        """True for different results; figures equal within rounding count as equal."""
         figures = [(*structs.astuple(check.result), *astuple(check.reading)) if check else () for check in self.checks]
         return len(figures[0]) != len(figures[-1]) or not all(map(is_same, figures[0], figures[-1]))
 
 
 @dataclass(frozen=True, slots=True)
 class NumberedRow:
-    """One row of two tables that differs, such as a phase: its number and what each says; nothing without the row."""
+    """A differing row of two tables, such as a phase: its number and its lines in each; empty where the row is
+    missing.
+    """
 
     number: int
     sides: tuple[list[Line], list[Line]]
@@ -131,13 +137,15 @@ def rows_of(*sides: Iterable[Line]) -> list[Row]:
 
 
 def checks_of(*accounts: Account) -> list[CheckRow]:
-    """Rows of the checks that one account or another has."""
+    """Rows of the checks of all accounts."""
     by_code = [{check.code: check for check in account.checks} for account in accounts]
     return [CheckRow(checks) for checks in _matched(by_code)]
 
 
 def _matched(sides: Sequence[Mapping[str, V]]) -> Iterator[tuple[V | None, ...]]:
-    """Items of each side under every code; one that the first lacks stands behind what it follows on its own side."""
+    """Items of each side under every code; an item missing in the first side follows its predecessor on its own
+    side.
+    """
     order = list(sides[0])
     for side in sides[1:]:
         place, known = 0, set(order)
@@ -152,9 +160,9 @@ def _matched(sides: Sequence[Mapping[str, V]]) -> Iterator[tuple[V | None, ...]]
 
 
 def numbered_rows(one: LineTable | None, other: LineTable | None) -> Iterator[NumberedRow]:
-    """Rows of two tables that differ, by their numbers."""
-    said = (table.values() if table else iter(()) for table in (one, other))
-    for place, (before, after) in enumerate(zip_longest(*said)):
+    """Differing rows of two tables, by their numbers."""
+    keys = (table.values() if table else iter(()) for table in (one, other))
+    for place, (before, after) in enumerate(zip_longest(*keys)):
         if before != after:
             a, b = (t.row(place) if t and place < len(t) else [] for t in (one, other))
             if any(row.differs for row in rows_of(a, b)):
@@ -186,7 +194,7 @@ LESS: Mapping[str, bool] = {
     "gear.length": True,
     "gear.weight_kg": True,
 }
-"""Figures of which less is better, or more; of any other no gear is better than another."""
+"""Figures -> True if less is better, False if more is; by any other figure no gear is better than another."""
 
 
 ALIKE = N_("Alike in all")
@@ -203,7 +211,7 @@ class RowGroup:
 def groups_of(accounts: Sequence[Account]) -> list[RowGroup]:
     """Gears of one selection beside the first of them: utilisations, figures under the cycle, and published figures.
 
-    Rows in which all are alike stand at the end; they stay in their places where nothing is compared.
+    Rows in which all gears are alike come last; with a single gear they stay in their places.
     """
     figures = rows_of(*([line for line in one.figures if line.kind == "computed"] for one in accounts))
     printed = rows_of(*(published.ranged([*account.published, *published.bolts(account.gear)]) for account in accounts))
@@ -220,16 +228,15 @@ def groups_of(accounts: Sequence[Account]) -> list[RowGroup]:
 
 
 def _beside(rows: Iterable[Row]) -> list[Row]:
-    return [replace(row, standings=_standings_of(row)) for row in rows if row.is_known]
+    return [
+        replace(row, standings=_standings([_rank_and_end(line) for line in row.lines], LESS.get(row.head.code)))
+        for row in rows
+        if row.is_known
+    ]
 
 
-def _standings_of(row: Row) -> tuple[Standing, ...]:
-    values = [(_rank(line), line and line.until) for line in row.lines]
-    return _standings(values, LESS.get(row.head.code))
-
-
-def _rank(line: Line | None) -> Any:
-    return math.inf if line and line.value == UNLIMITED else line and line.value
+def _rank_and_end(line: Line | None) -> tuple[Any, Any]:
+    return math.inf if line and line.value == UNLIMITED else line and line.value, line and line.until
 
 
 def _check_beside(row: CheckRow) -> CheckRow:
@@ -238,7 +245,7 @@ def _check_beside(row: CheckRow) -> CheckRow:
 
 
 def _standings(values: Sequence[tuple[Any, Any]], lowest: bool | None) -> tuple[Standing, ...]:
-    """How each value stands beside the first one; the end of a range counts where it begins alike."""
+    """Standing of each value beside the first one; the ends of ranges count if their beginnings are alike."""
     (first, first_end), *others = values
     standings: list[Standing] = ["reference"]
     for value, end in others:
@@ -284,7 +291,7 @@ def _costs(candidate: Candidate, gear: Gear) -> tuple[float, ...]:
 
 
 def lighter_miss(selection: Selection, designation: str | None, gears: Mapping[str, Gear]) -> Candidate | None:
-    """The rejected gear closest to passing among those that are judged and lighter than another; None without one."""
+    """The rejected gear closest to passing among the judged gears lighter than another one; None without one."""
     weight = _weight(designation, gears)
     if weight is None:
         return None

@@ -15,10 +15,10 @@ from hpn.explain.comparison import TOLERANCE, aligned, is_number, is_same
 from hpn.words.reply import Reply
 
 NAMED_BY = {"candidates": "designation", "checks": "code", "notices": "code"}
-"""Lists whose items are matched by a field of theirs: their order follows from their content."""
+"""Lists whose items are matched by one of their fields: their order follows from their content."""
 
 BRIEFLY = {"candidates": "status", "checks": "status", "notices": "text", "check_definitions": "title"}
-"""Field that represents an item which only one reply has."""
+"""Field that represents an item of only one reply."""
 
 VERDICTS = ("selected", "status", "governing_check", "rank")
 TEXTS = ("reason", "link", "notices", "check_definitions")
@@ -31,38 +31,35 @@ Kind = Literal["verdict", "figure", "text"]
 
 
 class Difference(Reply, frozen=True):
-    """One field that two replies give differently.
+    """One field that differs between two replies.
 
-    `pointer` is its JSON pointer in the saved reply, or in today's where the saved one lacks it. Of a candidate, check
-    or notice that only one of them has, its status or text stands for the whole.
+    `pointer` is its JSON pointer in the saved reply, or in today's if the saved one lacks it. A candidate, check or
+    notice in only one reply is one difference: its status or text.
     """
 
     pointer: Annotated[
         str,
-        Field(
-            description="JSON pointer into the saved result; into today’s where change is added, since the saved "
-            "lacks it."
-        ),
+        Field(description="JSON pointer into the saved result; into today’s if change is added."),
     ]
-    kind: Annotated[Kind, Field(description="Verdicts come first, then figures, then texts.")]
-    change: Annotated[Change, Field(description="Field of both replies, or of only one.")]
-    candidate: Annotated[str | None, Field(description="Designation of the candidate it belongs to.")]
-    check: Annotated[str | None, Field(description="Code of the check it belongs to.")]
+    kind: Annotated[Kind, Field(description="Kind of the field; verdicts come first, then figures, then texts.")]
+    change: Annotated[Change, Field(description="Field in both replies, or in one only.")]
+    candidate: Annotated[str | None, Field(description="Designation of the candidate of this field.")]
+    check: Annotated[str | None, Field(description="Code of the check of this field.")]
     field: Annotated[str, Field(description="Name of the field.")]
     saved: Annotated[Any, Field(description="Value as saved.")]
     today: Annotated[Any, Field(description="Value today.")]
     cause: Annotated[
         Literal["tie_rule"] | None,
         Field(
-            description="Reason for a verdict that differs where no figure does: gears or checks tie, and an earlier "
-            "version let the last bit of a number decide."
+            description="Reason for another verdict with the same figures: gears or checks tie, and in an earlier "
+            "version the last bit of a number decided."
         ),
     ] = None
 
 
 @dataclass(slots=True)
 class _Fields:
-    """The fields of a reply by a name that does not depend on any order, and the items they belong to."""
+    """The fields of a reply by names that don't depend on any order, and the items they belong to."""
 
     values: dict[Name, tuple[str, Any]] = field(default_factory=dict)
     items: set[Name] = field(default_factory=set)
@@ -117,13 +114,13 @@ def differences(saved: Selection | Mapping[str, Any], today: Selection | Mapping
 
 
 def _of_any(name: Name) -> Name:
-    """Name of a field of any item: where it has such items but none of them has the field, its version knew none."""
+    """Name of a field of any item. If none of these items has the field, its version did not know it."""
     named = enumerate(name)
     return tuple("" if place and (name[place - 1] in BRIEFLY or part.isdecimal()) else part for place, part in named)
 
 
 def _list_of(name: Name) -> Name:
-    """Name of a field of a numbered item without its number: the same of all items."""
+    """Name of a field of a numbered item without its number: the same for all items."""
     return tuple("" if part.isdecimal() else part for part in name)
 
 
@@ -139,7 +136,7 @@ def _largest_of_lists(*replies: _Fields) -> dict[Name, float]:
 def _differs(name: Name, before: _Fields, after: _Fields, largest: Mapping[Name, float]) -> bool:
     old, new = before.values.get(name), after.values.get(name)
     if (old is None or old[1] is None) and (new is None or new[1] is None):
-        return False  # what is left out is null
+        return False  # an omitted field is null
     if old is not None and new is not None:
         return not is_same(old[1], new[1], TOLERANCE * largest.get(_list_of(name), 0.0))
     lacking = before.items if old is None else after.items
@@ -175,17 +172,20 @@ NOT_FIGURES = (DESIGNATION, "size", "ratio", "sources", "source")
 
 
 class FigureDifference(Reply, frozen=True):
-    """A published figure of a gear, or one of a listed motor, that two catalogues give differently; None where one has
-    none.
+    """A published figure of a gear, or a figure of a listed motor, that differs between two catalogues; null where a
+    catalogue lacks it.
 
-    Of what only one of them has, its designation stands for the whole. A supplied curve is a list of points, bolts are
-    objects.
+    A gear or motor in only one catalogue is one difference: its designation. A supplied curve is a list of points,
+    bolts are objects.
     """
 
     candidate: Annotated[str | None, Field(description="Designation of the gear; null for a figure of a motor.")]
     motor: Annotated[str | None, Field(description="Designation of the motor; null for a figure of a gear.")]
     field: Annotated[
-        str, Field(description="Name of the figure in the catalogue; designation where only one has the gear or motor.")
+        str,
+        Field(
+            description="Name of the figure in the catalogue; designation if only one catalogue has the gear or motor."
+        ),
     ]
     saved: Annotated[Any, Field(description="Figure in the catalogue of that time; null where it was not published.")]
     today: Annotated[Any, Field(description="Figure in today’s catalogue; null where it is not published.")]
@@ -194,7 +194,7 @@ class FigureDifference(Reply, frozen=True):
 def figure_differences(
     saved: Catalogue, today: Catalogue, designations: Iterable[str], motor: str | None = None
 ) -> list[FigureDifference]:
-    """Differences of the figures that two catalogues publish of some gears, gear by gear, and of a listed motor."""
+    """Differences of two catalogues in the published figures of some gears, gear by gear, and of a listed motor."""
     of_gears = [
         FigureDifference(designation, None, *difference)
         for designation in designations
@@ -205,14 +205,14 @@ def figure_differences(
 
 
 def _pairs(before: dict[str, Any], after: dict[str, Any]) -> list[tuple[str, Any, Any]]:
-    """Names and both values of the figures that differ; of what only one catalogue has, its designation alone."""
+    """Names and both values of the figures that differ; for an item of one catalogue only, its designation."""
     both = bool(before and after)
     pairs = (pair for pair in aligned(before, after) if both or pair[0] == DESIGNATION)
     return [(name, old, new) for name, (old, new) in pairs if not is_same(old, new)]
 
 
 def _of_gear(catalogue: Catalogue, designation: str) -> dict[str, Any]:
-    """Figures of a gear by name; nothing where the catalogue lacks it."""
+    """Figures of a gear by name; empty if the catalogue lacks it."""
     gear = catalogue.by_designation.get(designation)
     if gear is None:
         return {}
@@ -228,7 +228,7 @@ def _of_gear(catalogue: Catalogue, designation: str) -> dict[str, Any]:
 
 
 def _of_motor(catalogue: Catalogue, designation: str) -> dict[str, Any]:
-    """Figures of a listed motor by name, likewise."""
+    """Figures of a listed motor by name; empty if the catalogue lacks it."""
     motor = catalogue.motor_by_designation.get(designation)
     return {"designation": designation, **_figures(motor)} if motor else {}
 

@@ -1,6 +1,6 @@
 """Parts that a file carries as JSON: application, answer, and its title block and reader.
 
-A program reads a file by it, and `hpn verify` makes the file again and compares. Report, workbook and package carry the
+Programs read them, and `hpn verify` makes the file again from them and compares. Report, workbook and package carry the
 same parts.
 """
 
@@ -20,7 +20,7 @@ APPLICATION, RESULT, DOCUMENT = "application.json", "result.json", "document.jso
 
 
 class CarriedTitle(msgspec.Struct, frozen=True):
-    """Contents of a file beside application and answer: link, title block, gear and reader."""
+    """Contents of a file besides application and answer: link, title block, gear and reader."""
 
     link: str
     heading: ExportTitle
@@ -34,9 +34,9 @@ _titled = msgspec.json.Decoder(CarriedTitle).decode
 
 
 def carried(export: Export, reader: Reader) -> Mapping[str, bytes]:
-    """Parts that a file carries, by their names; a saved answer to the byte."""
-    made = export.made and export.made.astimezone(UTC).date()
-    titled = CarriedTitle(export.link, export.heading, export.created, made, export.chosen, reader.marker)
+    """Parts that a file carries, by their names; a saved answer byte for byte."""
+    date = export.made and export.made.astimezone(UTC).date()
+    titled = CarriedTitle(export.link, export.heading, export.created, date, export.chosen, reader.marker)
     return {
         APPLICATION: export.application.model_dump_json(exclude_none=True).encode(),
         RESULT: export.reply or encode(export.selection),
@@ -45,10 +45,10 @@ def carried(export: Export, reader: Reader) -> Mapping[str, bytes]:
 
 
 def export_of(parts: Mapping[str, bytes], catalogue: Catalogue) -> tuple[Export, Reader]:
-    """The export that a file was made of, and its reader, by the parts that it carries.
+    """Export and reader of a file, from the parts that it carries.
 
     A package of an earlier version has no title block. Raises ValidationError, UnreadableReplyError or MsgspecError for
-    parts that are none.
+    invalid parts.
     """
     application = Application.model_validate_json(parts[APPLICATION])
     selection = decode(parts[RESULT])

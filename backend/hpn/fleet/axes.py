@@ -1,8 +1,8 @@
-"""Axes in list form as arrays: which of them are sound, and what the engine takes of them.
+"""Axes in list form as arrays: the sound ones among them, and their inputs for the engine.
 
 No object is made for an axis. Numbers are compared with the bounds of the models on arrays. All other rules depend on
-what is given and on texts, not on numbers: axes that are alike in that have a pattern, and the models judge one axis
-for all of a pattern. A rejected axis gets its reasons from the models themselves (`faults.py`).
+texts and on which inputs are given, not on numbers. Axes alike in those share a pattern, and the models judge one axis
+of each pattern. A rejected axis gets its reasons from the models themselves (`faults.py`).
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -21,8 +21,10 @@ from hpn.application.phase import ROOM
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.allowed import gears_for, with_listed_motor
 from hpn.engine.batch import chunks_of
-from hpn.engine.duty import Duty, InputArrays, Phases, least_torque
+from hpn.engine.duty import Duty, Phases, least_torque
+from hpn.engine.input_arrays import InputArrays
 from hpn.fleet.columns import AXIS, COLUMNS, NUMBER, InputColumn, is_list, is_text
+from hpn.fleet.columns import TEXTS as KINDS_OF_TEXT
 from hpn.physics.equations import FloatArray
 from hpn.words.fields import MAXIMUM_PHASES
 from hpn.words.titles import LONGEST_NAME, is_title
@@ -32,22 +34,22 @@ IntArray = NDArray[np.intp]
 
 LOADS = ("radial_N", "axial_N")
 STEADY = {"peak_torque_Nm": "torque_Nm", "peak_speed_rpm": "speed_rpm", "rms_torque_Nm": "torque_Nm"}
-"""Figures of phases that vary, and what they are of a steady one."""
+"""Figures of phases that vary, and the figure that replaces each in a steady phase."""
 
 PAUSE, REVERSES = "duty_cycle.pause_s", "requirements.load_reverses"
-TEXTS = ("bearing_model", "life_basis", "rank_by", "position_error_at", "shaft_drive")
-"""Inputs that are texts, as the engine takes them."""
+TEXTS = ("bearing_model", "life_basis", "rank_by", "position_error_at", "shaft_drive", "motor_curves")
+"""Inputs other than numbers, by the engine's names."""
 
 LEAST, ERROR_AT = "least_torque_Nm", "requirements.position_error_at"
 
 MOST_CELLS = 100_000
-"""Cells and items of lists that are objects at once, while the models judge axes."""
+"""Most cells and items of lists that are objects at once, while the models judge axes."""
 
 
 class Axes:
-    """The sound axes of a table in list form: `places` are their rows, all their phases stand one after another.
+    """Sound axes of a table in list form: `places` are their rows; their phases stand one after another.
 
-    An axis is sound where `select` takes it under the same catalogue; `is_excluded` are rows that are none anyhow.
+    An axis is sound where `select` takes it under the same catalogue; rows in `is_excluded` are never sound.
     """
 
     def __init__(self, table: pa.Table, catalogue: Catalogue, is_excluded: BoolArray | None = None) -> None:
@@ -56,7 +58,7 @@ class Axes:
         if is_excluded is not None:
             mask &= ~is_excluded
         self._take(table if mask.all() else table.filter(pa.array(mask)), np.flatnonzero(mask))
-        with np.errstate(all="ignore"):  # what is out of its bounds is rejected for that
+        with np.errstate(all="ignore"):  # values out of bounds are rejected anyway
             sound = self._have_sound_phases() & self._have_sound_stops() & self._have_sound_names()
             self._keep(self._in_bounds() & sound)
         self._judge()
@@ -74,12 +76,12 @@ class Axes:
     # --- Cells --------------------------------------------------------------------------------------------------------
 
     def _is_given(self, name: str) -> bool:
-        """True where any axis has something in a column."""
+        """True where any axis has a value in a column."""
         return name in self._table.column_names and self._table[name].null_count < self._table.num_rows
 
     def _numbers(self, name: str) -> FloatArray:
-        """Numbers of a column, shape (N,), or of a field of the phases, (all phases,): NaN where none is given,
-        infinite where NaN is."""
+        """Numbers of a column, shape (N,), or of a field of the phases, shape (all phases,): NaN where no number is
+        given, infinite for a given NaN."""
         if name not in self._cells:
             is_of_phases = name in COLUMNS.phases
             values = np.full(self.counts.sum() if is_of_phases else len(self.counts), np.nan)
@@ -107,7 +109,8 @@ class Axes:
         return mask
 
     def _have_sound_phases(self) -> BoolArray:
-        """True where a phase moves, none has figures that contradict each other, and one rests where rest is judged."""
+        """True for axes where a phase moves, no phase contradicts itself, and an axis with its error at rest rests,
+        (N,)."""
         T, n, t = (np.abs(self._numbers(name)) for name in ("torque_Nm", "speed_rpm", "duration_s"))
         mask = self._any_phase(n * t > LEAST_MOTION)
         if any(map(self._is_given, (*STEADY, LEAST))):
@@ -121,12 +124,12 @@ class Axes:
         return mask
 
     def _have_sound_stops(self) -> BoolArray:
-        """True where what opposes a stop is not less than the load's torque, which is part of it."""
+        """True where the torque against a stop is not less than the load's torque, a part of it; shape (N,)."""
         load, opposing = (self._numbers(f"emergency_stop.brake.{name}") for name in STOP_LOADS)
         return ~(opposing < np.nan_to_num(load))
 
     def _have_sound_names(self) -> BoolArray:
-        """True where each phase has a name that the models take, or none."""
+        """True where each phase has a valid name or none, shape (N,)."""
         mask = np.ones(len(self.counts), np.bool_)
         for name in (name for name in COLUMNS.phases if not _is_number(name) and self._is_given(name)):
             texts = pc.list_flatten(self._table[name]).combine_chunks().dictionary_encode()
@@ -134,23 +137,23 @@ class Axes:
             is_sound = np.ones(self.counts.sum(), np.bool_)
             is_given = np.repeat(np.asarray(pc.is_valid(self._table[name])), self.counts)
             places = np.asarray(pc.fill_null(texts.indices, -1))
-            is_sound[is_given] = np.append(sound, True)[places]  # the last one is that of no name
+            is_sound[is_given] = np.append(sound, True)[places]  # the last one stands for no name
             mask &= ~self._any_phase(~is_sound)
         return mask
 
     def _judge(self) -> None:
-        """Keep the axes whose pattern the models take; each has the gears and the defaults of its pattern."""
+        """Keep the axes whose pattern the models accept; each gets the gears and defaults of its pattern."""
         first, pattern = self._patterns()
         judged = [self._judged(cells) for _, cells in cells_of(self._table, first.tolist())]
         sound = np.array([each is not None for each in judged], np.bool_)
         self._gears = [each[1] for each in judged if each]
         applications = [each[0] for each in judged if each]
-        self._asked = InputArrays.of(applications) if applications else None
+        self._inputs = InputArrays.of(applications) if applications else None
         self._keep(sound[pattern])
         self._pattern = (np.cumsum(sound) - 1)[pattern[sound[pattern]]]
 
     def _patterns(self) -> tuple[IntArray, IntArray]:
-        """The first axis of each pattern, and the pattern of each axis."""
+        """First axis of each pattern, and pattern of each axis."""
         pattern = np.zeros(len(self.counts), np.intp)
         for name, column in COLUMNS.all.items():
             is_name = name in COLUMNS.phases and not _is_number(name)
@@ -162,7 +165,7 @@ class Axes:
         return first, pattern
 
     def _codes(self, name: str) -> IntArray:
-        """A number for each axis, the same where a column makes no difference to the rules."""
+        """Number for each axis, the same where the rules make no difference between the cells of a column."""
         if COLUMNS.all[name].kind == "boolean":  # null, false or true
             return (np.nan_to_num(self._numbers(name), nan=-1.0) + 1).astype(np.intp)
         if _is_number(name) and not (COLUMNS.all[name].by_size and is_text(self._table[name].type)):
@@ -183,10 +186,11 @@ class Axes:
         except (ValidationError, InputError):
             return None
 
-    # --- What the engine takes ----------------------------------------------------------------------------------------
+    # --- Inputs of the engine
+    # ---------------------------------------------------------------------------------------------
 
     def chunks(self) -> Iterator[tuple[GearList, IntArray]]:
-        """Axes that are evaluated together: of the same gears, of cycles with a like number of phases."""
+        """Axes to evaluate together: with the same gears, and cycles with a similar number of phases."""
         lists = list(dict.fromkeys(self._gears))
         which = np.array([lists.index(gears) for gears in self._gears], np.intp)[self._pattern]
         for number, gears in enumerate(lists):
@@ -198,17 +202,17 @@ class Axes:
         """Duty of some of the axes."""
         counts = self.counts[axes]
         longest = int(counts.max())
-        if (counts == longest).all() and axes[-1] - axes[0] == len(axes) - 1:  # as they lie
+        if (counts == longest).all() and axes[-1] - axes[0] == len(axes) - 1:  # contiguous: no copy
             part = slice(self._starts[axes[0]], self._starts[axes[0]] + len(axes) * longest)
             series = [values[part].reshape(-1, 1, longest) for values in self._phases.values()]
         else:
             inside = np.arange(longest) < counts[:, None]
             place = np.where(inside, self._starts[axes][:, None] + np.arange(longest), 0)
             series = [(values[place] * inside)[:, None, :] for values in self._phases.values()]
-        assert self._asked is not None
+        assert self._inputs is not None
         numbers = {path: values[axes, None] for path, values in self._wanted.items()}
-        texts = (getattr(self._asked, name)[self._pattern[axes]] for name in TEXTS)
-        of_sizes = self._asked.shaft_centres_mm.items()
+        texts = (getattr(self._inputs, name)[self._pattern[axes]] for name in TEXTS)
+        of_sizes = self._inputs.shaft_centres_mm.items()
         centres = {size: values[self._pattern[axes]] for size, values in of_sizes}
         return Duty(Phases(*series), InputArrays(numbers, *[*texts, self._numbers(REVERSES)[axes, None], centres]))
 
@@ -228,9 +232,9 @@ class Axes:
 
     @cached_property
     def _wanted(self) -> dict[str, FloatArray]:
-        """Every number that is asked for, shape (N,): an axis's own where it is given, else that of its pattern."""
+        """Every number that the engine needs, shape (N,): the axis's own where it is given, else its pattern's."""
         wanted = {}
-        for path, values in self._asked.numbers.items() if self._asked else ():
+        for path, values in self._inputs.numbers.items() if self._inputs else ():
             own, of_pattern = self._numbers("pause_s" if path == PAUSE else path), values[self._pattern, 0]
             wanted[path] = np.where(np.isnan(own), of_pattern, own)
         return wanted
@@ -239,11 +243,11 @@ class Axes:
 def _is_number(name: str) -> bool:
     """True for a column of numbers, one for each axis or phase."""
     column = COLUMNS.all[name]
-    return column.kind != "string" and (name in COLUMNS.phases or not column.is_list)
+    return column.kind not in KINDS_OF_TEXT and (name in COLUMNS.phases or not column.is_list)
 
 
 def _have_sound_lists(table: pa.Table) -> BoolArray:
-    """Axes with a name, and with lists of phases of one length, no longer than a duty cycle may be, shape (N,)."""
+    """True for axes with a name, and with lists of phases of equal length within the limit, shape (N,)."""
     lengths = {name: _lengths(table[name]) for name in COLUMNS.phases if name in table.column_names}
     count = lengths["torque_Nm"]
     mask: BoolArray = np.asarray(pc.is_valid(table[AXIS])) & (count >= 1) & (count <= MAXIMUM_PHASES)
@@ -258,7 +262,7 @@ def _lengths(column: pa.ChunkedArray) -> IntArray:
 
 
 def _values(column: pa.ChunkedArray) -> FloatArray:
-    """Numbers of cells; of texts only those that are a number."""
+    """Numbers of cells; a text that is no number is NaN, a given NaN is infinite."""
     if is_text(column.type):
         texts = pc.ascii_trim_whitespace(column)
         column = pc.if_else(pc.match_substring_regex(texts, f"^({NUMBER.pattern})$", ignore_case=True), texts, None)
@@ -278,7 +282,7 @@ def _inside(column: InputColumn, values: FloatArray) -> BoolArray:
 
 
 def cells_of(table: pa.Table, rows: Sequence[int]) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Rows with those of their cells that may be given: columns that none of them fills are left out."""
+    """Rows with their cells, without columns that none of these rows fills."""
     wanted = table.take(pa.array(rows, pa.int64()))
     wanted = wanted.select([name for name in wanted.column_names if wanted[name].null_count < len(rows)])
     size = np.full(len(rows), max(wanted.num_columns, 1))

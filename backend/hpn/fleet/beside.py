@@ -1,4 +1,4 @@
-"""Work on fleets for a service, in a process beside it: nothing of Arrow is imported by this module alone."""
+"""Work on fleets for a service, in a separate process: importing this module imports nothing of Arrow."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ from hpn.words.wording import Sentence
 
 
 class Sized(NamedTuple):
-    """End of a fleet: columns that were ignored though nobody asked for that; words for input that can't be used; the
-    system's code for a file that can't be written."""
+    """End of a fleet: unrequested columns that were ignored, the refusal of unusable input, and the error number of the
+    system for a file that can't be written."""
 
     ignored: tuple[str, ...] = ()
     refusal: str = ""
@@ -24,7 +24,7 @@ class Sized(NamedTuple):
 
 
 def sized(order: Order, catalogue: Catalogue, workers: int) -> Sized:
-    """Size a fleet in so many threads, which leaves files where all goes well."""
+    """Size a fleet in `workers` threads; the files appear only where all goes well."""
     from hpn.fleet.run import keep_memory, size_fleet, threads
 
     keep_memory()
@@ -41,13 +41,15 @@ def sized(order: Order, catalogue: Catalogue, workers: int) -> Sized:
 
 
 NAME = "The table"
-"""Name of a table that a page is given."""
+"""Name of a table that comes from a page."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineReading:
-    """A reading of a table of axes; of one that is taken as it is its axes and what is wrong with their cells, or words
-    for one that can't be used; and how many axes and phases it has."""
+    """Reading of a table of axes, with the numbers of its axes and phases.
+
+    A table in the columns of `hpn fleet` also has its rows and the faults of its cells, or a refusal.
+    """
 
     reading: Reading
     rows: Sequence[Mapping[str, Any]] = ()
@@ -60,7 +62,7 @@ class MachineReading:
 def read_machine(
     content: bytes | str, wanted: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
 ) -> MachineReading:
-    """Reading of a file or a text, as `reading_of` gives it."""
+    """Reading of a file or a text, as from `reading_of`."""
     reading = reading_of(content, wanted, choices, assumed)
     if not reading.suffix:
         rows = reading.table.axes if reading.table else ()
@@ -82,10 +84,10 @@ def read_machine(
 def read_answered(
     content: bytes, wanted: TableBounds, texts: Sequence[str]
 ) -> tuple[MachineReading, tuple[Sentence, ...]]:
-    """Reading of a file by answers of a program, and what is wrong with these; no unit is assumed."""
+    """Reading of a file by a program's answers, and the sentences on wrong answers; no unit is assumed."""
     return answered(
         texts,
         wanted.inputs,
         lambda choices: read_machine(content, wanted, choices),
-        lambda read: read.reading.table.columns if read.reading.table else (),
+        lambda machine: machine.reading.table.columns if machine.reading.table else (),
     )

@@ -1,4 +1,4 @@
-"""Sizing a fleet on a Dask cluster: the same function over the same axes; the extra `cluster` brings what it needs."""
+"""Fleets on a Dask cluster: the same function over the same axes. Needs the extra `cluster`."""
 
 import logging
 import signal
@@ -17,13 +17,13 @@ CONNECT_SECONDS = 10
 
 
 class _Workers:
-    """Workers of a cluster, which have the function once for all batches."""
+    """Workers of a cluster; they receive the function once for all batches."""
 
     def __init__(self, client: Any, size: Size) -> None:
         self._client, self._size = client, client.scatter(size, broadcast=True)
 
     def submit(self, size: Size, batch: RowBatch) -> Any:
-        """Outcome of a batch that a worker works on; another one takes what a lost worker had."""
+        """Future outcome of a batch; where a worker is lost, another takes over its batches."""
         return self._client.submit(_sized, self._size, batch, pure=False)
 
 
@@ -32,9 +32,9 @@ def _sized(size: Size, batch: RowBatch) -> Outcome:
 
 
 def dask(scheduler: str | None, workers: int) -> Engine:
-    """Engine of the cluster at an address, or of one of processes of this machine, started for the run."""
+    """Engine of the cluster at an address, or of processes on this machine, started for the run."""
     require("cluster")
-    distributed: Any = import_module("distributed")  # it has no types
+    distributed: Any = import_module("distributed")  # the package has no types
 
     def run(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
         with ExitStack() as stack:
@@ -50,7 +50,7 @@ def dask(scheduler: str | None, workers: int) -> Engine:
 
 
 def _of_this_machine(distributed: Any, workers: int) -> Any:
-    """A cluster of processes that keep memory as the command does."""
+    """Cluster of processes on this machine that keep memory as the command does."""
     environment = {name: str(value) for name, (_, value) in MEMORY.items()}
     with import_module("dask").config.set({"distributed.nanny.pre-spawn-environ": environment}), interrupts_held():
         return distributed.LocalCluster(
@@ -58,17 +58,18 @@ def _of_this_machine(distributed: Any, workers: int) -> Any:
             threads_per_worker=1,
             host="127.0.0.1",
             dashboard_address="127.0.0.1:0",
-            silence_logs=logging.ERROR,
+            silence_logs=logging.CRITICAL,  # a last heartbeat may miss the scheduler; faults of tasks are raised
         )
 
 
 @contextmanager
 def interrupts_held() -> Iterator[None]:
-    """Block interrupts: a process started here has them blocked from its first moment, this one gets them after.
+    """Block interrupts in the block: a process started there has them blocked from its start, this one gets them
+    afterwards.
 
-    The mask is that of the main thread; one that another thread takes is noted until then.
+    The mask is that of the main thread; an interrupt in another thread is noted and raised at the end.
     """
-    ensure_running()  # multiprocessing's own first process unblocks interrupts when it has started
+    ensure_running()  # multiprocessing's own first process unblocks interrupts at its start
     noted: list[int] = []
     handler = signal.signal(signal.SIGINT, lambda number, _: noted.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

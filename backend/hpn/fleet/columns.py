@@ -1,9 +1,9 @@
-"""The columns of a table of axes: one for every field of an application, with the bounds of the models.
+"""Columns of a table of axes: one for every field of an application, with the bounds of the models.
 
-A column is named by its path with dots, such as `requirements.life_h`; a field of a phase by itself, and it holds a
-list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. A column of numbers that may be given by size
-holds numbers, or texts of which each is a number or an object in JSON. Names, kinds and bounds are read from the
-models' JSON Schema, so that a new input needs no line here.
+A column is named by its path with dots, such as `requirements.life_h`; a field of a phase by its name alone, and it
+holds a list with an item per phase. `pause_s` stands for `duty_cycle.pause_s`. A column of numbers that may be given by
+size holds numbers, or texts that are each a number or a JSON object. Names, kinds and bounds come from the models' JSON
+Schema, so that a new input needs no line here.
 """
 
 import json
@@ -17,10 +17,10 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.types as kinds
 
-from hpn.application.faults import Location
+from hpn.application.faults import OF_PHASE, Location
 from hpn.application.input_fields import FIELDS, PHASE_FIELDS, PHASE_FIGURES, InputField, Kind
 from hpn.application.unique import require_unique
-from hpn.fleet.faults import OF_ITEM, OF_PHASE, OF_SIZE
+from hpn.fleet.faults import OF_ITEM, OF_SIZE
 from hpn.fleet.uuids import is_uuid
 
 Json = dict[str, Any]
@@ -28,27 +28,31 @@ Json = dict[str, Any]
 AXIS = "axis"
 SIZE_SHOWN = 40
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
-"""A number as it stands in a cell of text."""
+"""Number in a cell of text."""
+
+TEXTS = ("string", "points")
+"""Kinds whose cells are texts; a cell of points is JSON."""
 
 PAUSE = ("duty_cycle", "pause_s")
 Place = tuple[str, str, str]
-"""Template for a reason inside of a cell, and the name and value of the place in it."""
+"""Template for a reason inside a cell, and the name and value of the place in that cell."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class InputColumn(InputField):
-    """A column: its name, and the field whose values its cells, or the items of their lists, are."""
+    """Column: its name, and the field of its cells or of the items of their lists."""
 
     name: str
 
     @property
     def type(self) -> pa.DataType:
-        """Arrow type that its cells are read as."""
-        item = {"string": pa.string(), "boolean": pa.bool_()}.get("string" if self.by_size else self.kind, pa.float64())
+        """Arrow type of its cells."""
+        kind = "string" if self.by_size or self.kind == "points" else self.kind
+        item = {"string": pa.string(), "boolean": pa.bool_()}.get(kind, pa.float64())
         return pa.list_(item) if self.is_list else item
 
     def takes(self, type: pa.DataType, wanted: pa.DataType) -> bool:
-        """True where a column of an Arrow type can be read as one of a wanted type."""
+        """True where a column of an Arrow type can be read as a wanted type."""
         type = plain_type(type)
         if kinds.is_null(type):
             return not self.required
@@ -61,8 +65,8 @@ class InputColumn(InputField):
             return True
         if self.by_size and is_text(type):
             return True
-        if self.kind in ("string", "boolean"):
-            return is_text(type) if self.kind == "string" else bool(kinds.is_boolean(type))
+        if self.kind in (*TEXTS, "boolean"):
+            return is_text(type) if self.kind in TEXTS else bool(kinds.is_boolean(type))
         return bool(kinds.is_integer(type) or kinds.is_floating(type) or kinds.is_decimal(type))
 
 
@@ -75,7 +79,7 @@ LISTS = (kinds.is_list, kinds.is_large_list, kinds.is_fixed_size_list, kinds.is_
 
 
 def plain_type(type: pa.DataType) -> pa.DataType:
-    """Arrow type of the values themselves, however they are encoded: as a dictionary, as runs, in views."""
+    """Arrow type of the plain values, for any encoding: dictionary, runs or views."""
     if kinds.is_dictionary(type) or kinds.is_run_end_encoded(type):
         return plain_type(type.value_type)
     if is_list(type):
@@ -97,7 +101,7 @@ ONE_PHASE = re.compile(r"phases\.(?:0|[1-9][0-9]{0,4})\.([A-Za-z_]+)")
 def tolerance_column(name: str) -> InputColumn | None:
     """Column of a tolerance, such as `tolerances.torque_Nm.percent`; None for any other name.
 
-    There are as many as inputs, and one for each phase.
+    Every input has such columns, and every figure of each phase.
     """
     match = OF_TOLERANCE.fullmatch(name)
     if match is None:
@@ -123,7 +127,7 @@ _NUMBERS = {"pause_s", *(name for name, field in FIELDS.items() if field.kind ==
 
 
 class ColumnsByName(dict[str, InputColumn]):
-    """Columns by name; those of tolerances are known without a line each."""
+    """Columns by name; columns of tolerances are made at first use."""
 
     def __missing__(self, name: str) -> InputColumn:
         column = tolerance_column(name)
@@ -143,14 +147,14 @@ class ColumnsByName(dict[str, InputColumn]):
 
 @dataclass(frozen=True)
 class Columns:
-    """Every column that a table of axes may have."""
+    """All columns that a table of axes may have."""
 
     phases: Mapping[str, InputColumn]
     others: Mapping[str, InputColumn]
 
     @cached_property
     def at(self) -> Mapping[tuple[str, ...], InputColumn]:
-        """Columns that hold no phases, by their place in the application."""
+        """Columns without phases, by their place in the application."""
         return {column.path: column for column in self.others.values()}
 
     @cached_property
@@ -159,9 +163,9 @@ class Columns:
         return ColumnsByName({**self.phases, **self.others})
 
     def application_of(self, row: Mapping[str, Any]) -> Json:
-        """The application that a row stands for, as JSON that the models validate; nulls are not given.
+        """Application of a row, as JSON for the models; a null is an input not given.
 
-        Phases go as far as the longest list.
+        The number of phases is the length of the longest list.
         """
         application: Json = {"duty_cycle": {"phases": _phases(row, self.phases)}}
         for name, column in self.others.items():
@@ -178,7 +182,7 @@ class Columns:
         return application
 
     def column_at(self, location: Location) -> tuple[str, Place | None]:
-        """Column that a place in the application belongs to, and the place inside of it."""
+        """Column of a place in the application, and the place inside its cell."""
         if location[:2] == ("duty_cycle", "phases"):
             if len(location) == 2 or not isinstance(location[2], int):
                 return "torque_Nm", None
@@ -187,7 +191,8 @@ class Columns:
         if (column := self.at.get(names[:-1])) is not None and column.by_size:
             return column.name, (OF_SIZE, "size", names[-1][:SIZE_SHOWN])
         items = [(OF_ITEM, "number", str(part + 1)) for part in location if isinstance(part, int)]
-        return (self.at[names].name if names in self.at else ".".join(names)), (items[0] if items else None)
+        owner = self.at.get(names) or self.at.get(names[:-1])
+        return (owner.name if owner else ".".join(names)), (items[0] if items else None)
 
 
 def _put(document: Json, path: Sequence[str], value: float) -> None:
@@ -210,26 +215,27 @@ def _phases(row: Mapping[str, Any], columns: Mapping[str, InputColumn]) -> list[
 
 
 def _plain(value: Any, column: InputColumn) -> Any:
-    """A cell as the models take it: any kind of number as a float, of a text by size what it says in JSON.
+    """Cell in the form of the models: any number as a float, a text by size or of points as its JSON value.
 
-    What a page has read of a cell may be a text where a number belongs, which the models refuse.
+    A cell read by a page may be a text in place of a number; the models refuse it.
     """
     if column.by_size and isinstance(value, str):
-        return _by_size(value)
+        return float(value) if NUMBER.fullmatch(value.strip()) else _in_json(value, dict)
+    if column.kind == "points" and isinstance(value, str):
+        return _in_json(value, list)
     is_number = isinstance(value, float | int) and not isinstance(value, bool)
-    return float(value) if is_number and column.kind not in ("string", "boolean") else value
+    return float(value) if is_number and column.kind not in (*TEXTS, "boolean") else value
 
 
-def _by_size(text: str) -> Any:
-    """Number or object of a text; the text itself, which the models refuse, where it is neither."""
-    if NUMBER.fullmatch(text.strip()):
-        return float(text)
+def _in_json(text: str, wanted: type) -> Any:
+    """Value of a JSON text, its whole numbers as floats; the text itself where it is invalid or of another type, which
+    the models refuse."""
     try:
         require_unique(text.encode())
-        value = json.loads(text)
+        value = json.loads(text, parse_int=float)
     except (ValueError, RecursionError):
         return text
-    return value if isinstance(value, dict) else text
+    return value if isinstance(value, wanted) else text
 
 
 def _column(name: str, field: InputField, *, is_list: bool) -> InputColumn:
@@ -261,23 +267,23 @@ OF_MACHINE: Mapping[str, InputColumn] = {
     "without": _of_machine("without", "string", is_list=True),
     "rest": _of_machine("rest", "string"),
 }
-"""Columns that the table of a machine has beside those of `hpn fleet`: what only a machine has of an axis."""
+"""Columns that a machine's table has beside those of `hpn fleet`: fields that only a machine's axes have."""
 
 LONG_TEXTS = ("note", "rest")
-"""Those whose texts the model of an axis bounds."""
+"""Columns whose texts are bounded by the model of an axis."""
 
 MACHINE = ColumnsByName({**COLUMNS.all, **OF_MACHINE})
 """Columns of the table of a machine."""
 
 
 INDEX = re.compile("__index_level_[0-9]+__")
-"""Name that pandas gives an index without one."""
+"""Name that pandas gives an unnamed index."""
 
 
 def are_taken(names: Sequence[str], is_in_list_form: bool) -> bool:
-    """True for columns of a machine that the reader of fleets knows, an index of pandas among them; long form with
-    other columns is read as a table of cells, in which `20A` and `4/5` are lists."""
-    is_in_list_form = is_in_list_form or "axis_name" in names  # of a machine whose first axis has no phases
+    """True for columns that the reader of fleets knows, those of a machine and an index of pandas among them. Long form
+    with other columns is read as a table of cells, where `20A` and `4/5` are lists."""
+    is_in_list_form = is_in_list_form or "axis_name" in names  # a machine whose first axis has no phases
     known = {AXIS, *COLUMNS.phases, *((*COLUMNS.others, *OF_MACHINE) if is_in_list_form else ())}
     known |= {name for name in names if is_in_list_form and tolerance_column(name)}
     texts = {name for place, name in enumerate(names) if not INDEX.fullmatch(name) and (place or name)}

@@ -23,17 +23,17 @@ from hpn.fleet.tables import AxisTable, Progress, RowBatch
 from hpn.words.wording import N_, Sentence
 
 BLOCK_BYTES = HEAD_BYTES = 8_000_000
-"""Lines that are read at once, and the beginning of a file, in which header or first row stand."""
+"""Bytes read at once, and bytes of a file's beginning that hold its header and first row."""
 
 MOST_LINE_BYTES = 64_000_000
-"""Longest line; an axis of 10,000 phases has about 1 MB."""
+"""Longest line in bytes; an axis of 10,000 phases has about 1 MB."""
 
 MOST_BROKEN = 100_000
-"""Lines of a block that are no rows; a file with more is no table of axes, and the run ends with that."""
+"""Most lines of a block that are no rows; a file with more is no table of axes, and ends the run."""
 
 MOST_SHOWN = 60
 Reason = tuple[Sentence, str]
-"""Sentence that says what would be right, and a code for programs."""
+"""Sentence with the accepted form, and a code for programs."""
 
 OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 BOM = b"\xef\xbb\xbf"
@@ -44,14 +44,14 @@ NO_TEXTS = Sentence(N_('must be a JSON list of texts, such as ["14A", "20A"]')),
 WRONG_LENGTH = N_("the row has {found} cells where the header has {expected}, in {row}")
 NOT_UTF8 = Sentence(N_("must be UTF-8")), "string_unicode"
 QUOTED = re.compile(rb'(?:\A|(?<=[,\r\n]))"[^"]*(?:""[^"]*)*(?:"(?![^,\r\n])|("?))')
-"""A cell in quotes; group 1 is there where nothing closes it, or where more follows than the end of its cell."""
+"""Cell in quotes; group 1 exists where the cell has no closing quote, or where text follows that quote."""
 
 REPLACED = "\ufffd"
-"""Stands for bytes that are no UTF-8, here and in every text that was read so before."""
+"""Stand-in for bytes that are not UTF-8, here and in texts that were decoded before."""
 
 
 def cut(text: str) -> str:
-    """A text to be quoted in a reason; `; ` stands between reasons alone."""
+    """Text to quote in a reason, shortened; `; ` is reserved for the space between reasons."""
     text = text.replace("; ", ";")
     return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"
 
@@ -62,21 +62,21 @@ class CsvTable(AxisTable):
     has_untyped_axes = True
 
     def open(self) -> BinaryIO:
-        """The file, to be read from its start."""
+        """File opened at its start."""
         return open(self.path, "rb") if self.content is None else io.BytesIO(self.content)
 
     @cached_property
     def head(self) -> bytes:
-        """The first lines."""
+        """First lines of the file."""
         with self.open() as file:
             return self.read(file, HEAD_BYTES)
 
     def read(self, file: BinaryIO, size: int) -> bytes:
-        """The next bytes of the file, none at its end."""
+        """Next bytes of the file, none at its end."""
         return file.read(size)
 
     def blocks(self) -> Iterator[bytes]:
-        """The lines behind the header, some at a time."""
+        """Lines after the header, some at a time."""
         with self.open() as file:
             file.seek(self.first_byte)
             rest, line = b"", 1 + self.head[: self.first_byte].count(b"\n")
@@ -96,12 +96,12 @@ class CsvTable(AxisTable):
                 yield rest
 
     def _note_progress(self, file: BinaryIO) -> None:
-        packed: Any = getattr(file, "fileobj", file)  # of gzip
+        packed: Any = getattr(file, "fileobj", file)  # gzip has its compressed file there
         total = self.path.stat().st_size if self.content is None else len(self.content)
         self.progress = Progress(packed.tell(), total, "B")
 
     def too_many_broken(self, first: str) -> FleetError:
-        """The error of a file of which hardly a line is a row."""
+        """Error of a file with hardly a line that is a row."""
         return FleetError(
             f"{self.path}: more than {MOST_BROKEN} lines of one stretch of {BLOCK_BYTES} bytes can’t be read as rows, "
             f"the first of them is {cut(first)}; mend them or leave them out"
@@ -109,7 +109,7 @@ class CsvTable(AxisTable):
 
     @cached_property
     def _header(self) -> tuple[list[str], int]:
-        """Names of the columns, and where the rows begin."""
+        """Names of the columns, and the byte where the rows begin."""
         content = self.head.removeprefix(BOM)
         line, _, _ = content.partition(b"\n")
         try:
@@ -131,13 +131,13 @@ class CsvTable(AxisTable):
 
     @property
     def first_byte(self) -> int:
-        """Place in the file where the rows begin."""
+        """Byte of the file where the rows begin."""
         return self._header[1]
 
     @cached_property
     def is_in_list_form(self) -> bool:
         if "torque_Nm" not in self.names or "axis_name" in self.names:
-            return "torque_Nm" in self.names  # a machine's axes are rows, and any of them may have no phases
+            return "torque_Nm" in self.names  # a machine's axes are rows, and each may lack phases
         batches = self._texts(["torque_Nm"])
         first = next((cells[0].as_py() for batch in batches if len(cells := batch.rows[0].drop_null())), None)
         return first is not None and bool(first.lstrip().startswith("["))
@@ -147,9 +147,10 @@ class CsvTable(AxisTable):
         return pa.string()
 
     def end_of_lines(self, content: bytes, line: int, *, is_whole: bool = False) -> int:
-        """Byte behind the last whole line of content that begins with a line of the file, 0 where there is none.
+        """Byte after the last whole line of content, 0 where there is none; content begins with line `line` of the
+        file.
 
-        Whole content is the end of the file.
+        Whole content ends with the file. Raises FleetError for a quote that nothing closes in its cell.
         """
         if b'"' not in content:
             return content.rfind(b"\n") + 1
@@ -170,9 +171,10 @@ class CsvTable(AxisTable):
         return int(ends[-1]) + 1 if len(ends) else 0
 
     def _is_broken(self, cell: re.Match[bytes], *, is_at_end: bool) -> bool:
-        """True for a cell that takes other lines along: nothing closes it, or a quote in one of those lines does.
+        """True for a cell that swallows other lines: it has no closing quote, or a quote in one of those lines closes
+        it.
 
-        At the end of what was read, more of a cell may follow.
+        At the end of the content, more of a cell may follow.
         """
         lines = cell[0].split(b"\n")
         if len(lines) == 1 or (cell[1] is not None and not is_at_end):
@@ -191,7 +193,7 @@ class CsvTable(AxisTable):
             yield RowBatch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
 
     def _texts(self, names: Sequence[str]) -> Iterator[RowBatch]:
-        """Cells as text; a row with too few or too many has none but its axis."""
+        """Cells as text; a row with too few or too many cells keeps only its axis."""
         for block in self.blocks():
             broken: list[pacsv.InvalidRow] = []
 
@@ -221,7 +223,7 @@ class CsvTable(AxisTable):
             yield self._with_broken(rows, broken)
 
     def _with_broken(self, rows: pa.Table, broken: Sequence[pacsv.InvalidRow]) -> RowBatch:
-        """Rows in their places that have too few or too many cells; the number of a row counts from 1."""
+        """Rows with the broken ones, of too few or too many cells, in their places; row numbers count from 1."""
         if not broken:
             return RowBatch(rows)
         is_broken = np.zeros(rows.num_rows + len(broken), bool)
@@ -234,7 +236,7 @@ class CsvTable(AxisTable):
         return RowBatch(placed, [CellFault(row.number - 1, AXIS, _reason_of(row), "row_length") for row in broken])
 
     def _axis_of(self, line: str, cells: int) -> str | None:
-        """Axis of a broken row, where its cell has an end, and the header names it."""
+        """Axis of a broken row, where its cell is complete and the header names it; else None."""
         place = list(self.all_names).index(AXIS)
         if cells <= place + 1:
             return None
@@ -250,7 +252,7 @@ class CsvTable(AxisTable):
 
 
 class GzipCsvTable(CsvTable):
-    """CSV in a gzip file."""
+    """Table of CSV in a gzip file."""
 
     def open(self) -> BinaryIO:
         return cast(BinaryIO, gzip.open(self.path if self.content is None else io.BytesIO(self.content)))
@@ -269,8 +271,8 @@ def _reason_of(row: pacsv.InvalidRow) -> Sentence:
 
 
 def _are_of_cells(characters: NDArray[np.uint8], marks: NDArray[np.intp]) -> bool:
-    """True where every second quote begins a cell, or goes on with one behind a doubled quote, and every other ends one
-    or is the first of a doubled quote."""
+    """True where every odd quote begins a cell or is the second of a doubled quote, and every even one ends a cell or
+    is the first of a doubled quote."""
     opening, closing = marks[::2], marks[1::2]
     separators = np.frombuffer(b",\r\n", np.uint8)
     doubled = opening[1:] == closing[: len(opening) - 1] + 1
@@ -294,7 +296,7 @@ def _as_utf8(content: bytes) -> bytes:
 def _parsed(
     texts: pa.Array, column: InputColumn | None, wanted: pa.DataType
 ) -> tuple[pa.Array, list[tuple[int, Reason]]]:
-    """Values of cells of CSV, and the rows of those that are none, with what would be right."""
+    """Values of CSV cells, and the rows of invalid cells with the reasons."""
     if column is None or pa.types.is_string(wanted):
         broken = pc.fill_null(pc.match_substring(texts, REPLACED), False)
         return pc.if_else(broken, None, texts), [(int(row), NOT_UTF8) for row in np.flatnonzero(np.asarray(broken))]
@@ -314,7 +316,7 @@ def _parsed(
 
 
 def no_list(column: InputColumn) -> Reason:
-    """Reason of a cell that is no list."""
+    """Reason for a cell that is no list."""
     return NO_TEXTS if column.kind == "string" else NO_NUMBERS
 
 

@@ -1,4 +1,4 @@
-"""From rows of tables to axes in list form: phases of long form are gathered."""
+"""Axes in list form from rows of tables: phases of long form are gathered."""
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
@@ -26,7 +26,7 @@ def axes_of(table: AxisTable) -> Iterator[RowBatch]:
 
 
 def slices(axes: RowBatch, most: int) -> Iterator[RowBatch]:
-    """Axes so many at a time."""
+    """Axes, at most `most` at a time."""
     row_of = attrgetter("row")
     faults, begun = sorted(axes.faults, key=row_of), 0
     for start in range(0, axes.rows.num_rows, most):
@@ -39,15 +39,15 @@ def slices(axes: RowBatch, most: int) -> Iterator[RowBatch]:
 
 
 class _Last(NamedTuple):
-    """The last row that was read: its axis, and whether it can't be read, its axis included."""
+    """Axis of the last row read, and whether that row is unreadable with its axis."""
 
     axis: Any = None
     is_broken: bool = False
 
 
 def _with_axes(batches: Iterator[RowBatch]) -> Iterator[RowBatch]:
-    """Rows of which each has an axis: a line that can't be read, its axis included, counts as one of the axis before
-    it, and the line behind it may belong to either."""
+    """Rows that all have an axis. A line whose axis is unreadable counts for the axis before it; the line after it is a
+    fault, since it may belong to either."""
     last = _Last()
     for batch in batches:
         if batch.rows.num_rows:
@@ -74,7 +74,7 @@ def _filled(batch: RowBatch, before: _Last) -> tuple[RowBatch, _Last]:
 
 
 def _gathered(batches: Iterator[RowBatch]) -> Iterator[RowBatch]:
-    """Axes of rows that are phases: an axis ends where another begins."""
+    """Axes from rows of phases: an axis ends where another begins."""
     left: RowBatch | None = None
     for batch in batches:
         rows = batch if left is None else joined([left, batch])
@@ -82,13 +82,13 @@ def _gathered(batches: Iterator[RowBatch]) -> Iterator[RowBatch]:
         if len(starts) > 1:
             yield _listed(rows.between(0, int(starts[-1])), starts[:-1])
         last = int(starts[-1])
-        left = rows.between(last, min(count, last + MAXIMUM_PHASES + 1))  # more would be too many all the same
+        left = rows.between(last, min(count, last + MAXIMUM_PHASES + 1))  # the reason stays the same
     if left is not None:
         yield _listed(left, np.zeros(1, np.intp))
 
 
 def run_starts(axis: pa.ChunkedArray) -> IntArray:
-    """Rows where another axis begins; rows without an axis that lie together are one."""
+    """Rows where another axis begins; consecutive rows without an axis are one."""
     axis = pa.concat_arrays(axis.chunks) if isinstance(axis, pa.ChunkedArray) else axis
     one, following = axis.slice(0, len(axis) - 1), axis.slice(1)
     differs: BoolArray = np.asarray(pc.fill_null(pc.not_equal(one, following), False))
@@ -97,8 +97,7 @@ def run_starts(axis: pa.ChunkedArray) -> IntArray:
 
 
 def _shortened(batch: RowBatch, starts: IntArray) -> tuple[RowBatch, IntArray]:
-    """The axes with one phase more than may be where they have more: the reason is the same, however many of their rows
-    were read at once."""
+    """Axes cut to one phase above the limit: their reason is the same however many of their rows were read at once."""
     counts = np.diff(np.append(starts, batch.rows.num_rows))
     if counts.max() <= MAXIMUM_PHASES + 1:
         return batch, starts
@@ -109,7 +108,7 @@ def _shortened(batch: RowBatch, starts: IntArray) -> tuple[RowBatch, IntArray]:
 
 
 def _listed(batch: RowBatch, starts: IntArray) -> RowBatch:
-    """Axes whose phases begin at rows: the columns of the phases become lists, of others the first row counts."""
+    """Axes whose phases begin at given rows: columns of phases become lists, for others the first row counts."""
     batch, starts = _shortened(batch, starts)
     rows, first = batch.rows, pa.array(starts)
     ends = pa.array(np.append(starts, rows.num_rows).astype(np.int32))
@@ -124,14 +123,14 @@ def _listed(batch: RowBatch, starts: IntArray) -> RowBatch:
 
 
 def _placed(faults: Sequence[CellFault], starts: IntArray) -> Iterator[CellFault]:
-    """Faults of rows as those of the axes that begin at some of them, each once."""
+    """Faults of rows as faults of axes, each once."""
     distinct = {(fault.row, fault.column, fault.reason.text): fault for fault in faults}
     for _, fault in sorted(distinct.items()):
         place = int(np.searchsorted(starts, fault.row, side="right")) - 1
         number = fault.row - int(starts[place]) + 1
         if (fault.column, fault.reason) != (AXIS, TOO_LONG):
             yield fault._replace(row=place, reason=of_phase(number, fault.reason))
-        elif number == 1:  # the name is that of all its phases
+        elif number == 1:  # all phases of an axis have its name
             yield fault._replace(row=place)
 
 
@@ -148,7 +147,7 @@ def _differing(rows: pa.Table, starts: IntArray) -> Iterator[CellFault]:
 
 
 def _codes(column: pa.Array) -> IntArray:
-    """A number for each cell, the same for the same cells."""
+    """Number for each cell, the same for equal cells."""
     if is_list(column.type):  # Arrow compares no lists
         numbers: dict[Any, int] = {}
         cells = (cell and tuple(cell) for cell in column.to_pylist())

@@ -1,4 +1,4 @@
-"""The axes that are shown one by one, in a page or a report: their answers, and what they were asked with."""
+"""Axes that a page or a report shows one by one: their answers and their inputs."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -22,16 +22,15 @@ from hpn.fleet.outcome import FAULTS, answer_fields
 from hpn.fleet.summary import AxisCounts, summary_of
 
 MOST_LISTED = 10_000
-"""Axes that a page or a report shows one by one; more are in the files."""
+"""Most axes that a page or a report shows one by one; the files have all."""
 
 State = Literal["selected", "unsuitable", "rejected"]
 
 
 @dataclass(frozen=True)
 class Listing:
-    """Counts over all axes, and the first of them: `answers`, with the nearest miss where no gear suits, and `axes`
-    in list form with the inputs of those that were not rejected. Their names are text.
-    """
+    """Counts over all axes, and the first axes. `answers` have the nearest miss where no gear suits; `axes` are the
+    inputs of axes that were not rejected, in list form. Names of axes are text."""
 
     summary: AxisCounts
     answers: pa.Table
@@ -39,7 +38,7 @@ class Listing:
 
 
 class AxisRow(NamedTuple):
-    """An axis with its gear, or with the nearest miss where none suits; `place` counts the axes of the input."""
+    """Axis with its gear, or with the nearest miss where none suits; `place` counts the axes of the input from 1."""
 
     place: int
     axis: str
@@ -56,11 +55,11 @@ class AxisRow(NamedTuple):
 
 
 NEAREST = pa.schema([("nearest", pa.string()), ("nearest_check", pa.string()), ("nearest_utilisation", pa.float64())])
-"""Columns beside those of the answers: the gear that comes nearest where none suits."""
+"""Additional columns of the answers: the nearest gear where none suits."""
 
 
 def listing_of(order: Order, answers: Iterator[pa.Table], catalogue: Catalogue) -> Listing:
-    """Listing of an order that was sized: of the axes as they were given, and of their answers."""
+    """Listing of a sized order, from its axes as they were given and from their answers."""
     pieces, count = [answer_fields(pa.string()).empty_table()], 0
 
     def noted() -> Iterator[pa.RecordBatch]:
@@ -78,7 +77,7 @@ def listing_of(order: Order, answers: Iterator[pa.Table], catalogue: Catalogue) 
 
 
 def with_nearest(answers: pa.Table, open_axes: pa.Table, catalogue: Catalogue) -> pa.Table:
-    """Answers beside which the nearest miss stands where no gear suits."""
+    """Answers with the nearest miss where no gear suits."""
     names = answers.filter(pc.equal(answers["suitable"], 0))[AXIS].combine_chunks()
     lacking = open_axes.filter(pc.is_in(open_axes[AXIS], names))
     misses, places = nearest_misses(lacking, catalogue), pc.index_in(answers[AXIS], lacking[AXIS].combine_chunks())
@@ -88,7 +87,7 @@ def with_nearest(answers: pa.Table, open_axes: pa.Table, catalogue: Catalogue) -
 
 
 def _open_axes(order: Order, names: pa.ChunkedArray) -> pa.Table:
-    """Axes of these names in list form, their names as text."""
+    """Axes with these names in list form, their names as text."""
     pieces, count, wanted = list[pa.Table](), 0, names.combine_chunks()
     for axes in axes_of(open_axes(order.axes, order.ignored)):
         rows = axes.rows.set_column(axes.rows.column_names.index(AXIS), AXIS, axes.rows[AXIS].cast(pa.string()))
@@ -100,7 +99,7 @@ def _open_axes(order: Order, names: pa.ChunkedArray) -> pa.Table:
 
 
 def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
-    """The gear that `select` puts first for each of some sound axes that none suits, with what governs it."""
+    """Gear that `select` puts first for each sound axis without a suitable gear, with its governing check."""
     batch = Axes(axes, catalogue)
     columns = dict[str, list[Any]]((name, [None] * axes.num_rows) for name in NEAREST.names)
     for gears, members in batch.chunks():
@@ -117,7 +116,7 @@ def nearest_misses(axes: pa.Table, catalogue: Catalogue) -> pa.Table:
 
 
 def _foremost(evaluation: Evaluation) -> PlaceArray:
-    """Place of the first gear that is judged or lacks an input alone, of any if there is none, shape (N, 1)."""
+    """Place of the first gear that is judged or lacks only an input, else of the first gear, shape (N, 1)."""
     judged = evaluation.is_judged | evaluation.lacks_input
     first = np.take_along_axis(judged, evaluation.order, -1).argmax(axis=-1)[:, None]
     places: PlaceArray = np.take_along_axis(evaluation.order, first, -1)
@@ -125,18 +124,18 @@ def _foremost(evaluation: Evaluation) -> PlaceArray:
 
 
 def applications_of(axes: pa.Table) -> Iterator[tuple[str, Application]]:
-    """Axes of a listing by name, as the models have them."""
+    """Names and applications of the axes of a listing, in the form of the models."""
     for cells in axes.to_pylist():
         yield cells[AXIS], Application.model_validate(COLUMNS.application_of(cells))
 
 
 def rows_of(answers: pa.Table) -> list[AxisRow]:
-    """The answers of a listing, row by row."""
+    """Answers of a listing as records, row by row."""
     return [_row(place, **cells) for place, cells in enumerate(answers.to_pylist(), start=1)]
 
 
 NOT_LISTED = ("life_L10_h", "holds", "worst_utilisation", "worst_governing_check")
-"""Columns of the answers that a line of the list doesn't have; older answers lack those of tolerances."""
+"""Columns of the answers that a line of the list does not show; older answers lack those of tolerances."""
 
 
 def _row(place: int, **cells: Any) -> AxisRow:

@@ -1,4 +1,4 @@
-"""Axes of a machine out of a table: of one that `hpn fleet` takes as plain data, and of such rows as axes."""
+"""Axes of a machine from a table: rows of a table of `hpn fleet` as plain data, and axes from such rows."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -11,24 +11,23 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 from pydantic import ValidationError
 
-from hpn.application.faults import REQUIRED, Location, sentences_of
+from hpn.application.faults import OF_PHASE, OF_ROW, REQUIRED, sentences_of
 from hpn.documents.axis import MOST_OF_A_KIND, Axis
 from hpn.fleet.columns import AXIS, COLUMNS, MACHINE, InputColumn
 from hpn.fleet.csv_tables import cut, no_list
-from hpn.fleet.faults import OF_ITEM, OF_PHASE, TWICE, CellFault, of_phase
+from hpn.fleet.faults import OF_ITEM, TWICE, CellFault, of_phase
 from hpn.fleet.gathering import axes_of
 from hpn.fleet.machine_axes import axis_of
 from hpn.fleet.opened import open_axes
 from hpn.fleet.order import MOST_AXES, MOST_PHASES
 from hpn.fleet.outcome import faults_of_lists
 from hpn.words.titles import LONGEST_NAME
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Quantity, Sentence
 
 Cells = Mapping[str, Any]
-"""An axis in list form, by the names of columns."""
+"""Axis in list form, by the names of columns."""
 
 NO_QUANTITY = N_("must be a whole number from 1 to {most}")
-OF_ROW = N_("row {number}: {reason}")
 RIGHT: Mapping[str, tuple[Any, str, str]] = {
     "string": (str, N_("must be text, not {found}"), "string_type"),
     "boolean": (bool, N_("must be true or false, not {found}"), "bool_type"),
@@ -40,8 +39,8 @@ NUMBER: tuple[Any, str, str] = (float, N_("must be a number, such as 9.3, not {f
 
 
 class MachineRows(NamedTuple):
-    """Axes of a table, no more of them than a machine may have, and what is wrong with their cells; and how many there
-    are."""
+    """Axes of a table with the faults of their cells, at most as many as a machine may have; and the numbers of all
+    axes and phases."""
 
     rows: list[dict[str, Any]]
     faults: list[CellFault]
@@ -68,7 +67,7 @@ def given_of(content: bytes, name: str) -> MachineRows:
 
 
 class TableAxis(NamedTuple):
-    """An axis of a table under its name there, and what is wrong with its cells."""
+    """Axis of a table with its name there, and the faults of its cells."""
 
     axis: Axis
     name: str | None
@@ -76,7 +75,7 @@ class TableAxis(NamedTuple):
 
 
 def axes_in(rows: Sequence[Cells], faults: Sequence[CellFault] = ()) -> list[TableAxis]:
-    """Axes of the rows of a table, each once; one of which a cell is lost has nothing but its name."""
+    """Axes of the rows of a table, each once; an axis with a lost cell has only its name."""
     lost = dict[int, list[CellFault]]()
     for fault in faults:
         lost.setdefault(fault.row, []).append(fault)
@@ -87,7 +86,7 @@ def axes_in(rows: Sequence[Cells], faults: Sequence[CellFault] = ()) -> list[Tab
 
 
 def _once(rows: Sequence[Cells], places: Sequence[int], lost: Mapping[int, Sequence[CellFault]]) -> TableAxis:
-    """The axis of a name, which rows that are not together are torn into."""
+    """Axis of a name; a fault where its rows are not together."""
     place = places[0]
     row, faults = rows[place], lost.get(place, ())
     if len(places) > 1:
@@ -96,41 +95,36 @@ def _once(rows: Sequence[Cells], places: Sequence[int], lost: Mapping[int, Seque
 
 
 def _axis(row: Cells, place: int, faults: list[CellFault]) -> TableAxis:
-    is_of_machine = "axis_name" in row  # its axes are numbered, and need no name
+    is_of_machine = "axis_name" in row  # axes of a machine are numbered, and need no name
     name = row["axis_name"] if is_of_machine else row.get(AXIS) or None
     if not faults and not is_of_machine:
         missing = [] if name is not None else [CellFault(place, AXIS, Sentence(REQUIRED), "missing")]
         faults = missing + [CellFault(place, *fault) for fault in faults_of_lists(row)]
-    if not _is_quantity(row.get("quantity", 1.0)):
+    quantity = row.get("quantity", 1.0)
+    if not isinstance(quantity, float | int) or quantity not in range(1, MOST_OF_A_KIND + 1):
         faults = [
             *faults,
-            CellFault(place, "quantity", Sentence(NO_QUANTITY, {"most": f"{MOST_OF_A_KIND}"}), "quantity"),
+            CellFault(place, "quantity", Sentence(NO_QUANTITY, {"most": Quantity(MOST_OF_A_KIND, "", 7)}), "quantity"),
         ]
     if not faults:
         try:
             return TableAxis(axis_of(row), name, wrong_cells(row, place))
         except ValidationError as error:
-            faults = [CellFault(place, _column(at), sentence, code) for at, sentence, code in sentences_of(error)]
+            faults = [
+                CellFault(place, "axis_name" if at[0] == "name" else str(at[0]), sentence, code)
+                for at, sentence, code in sentences_of(error)
+            ]
     return TableAxis(Axis(), name[:LONGEST_NAME] if is_of_machine and name else name, faults)
 
 
-def _is_quantity(cell: Any) -> bool:
-    return isinstance(cell, float | int) and cell in range(1, MOST_OF_A_KIND + 1)
-
-
-def _column(location: Location) -> str:
-    """Column of a field of an axis."""
-    return "axis_name" if location[0] == "name" else str(location[0])
-
-
 def wrong_cells(row: Cells, place: int) -> list[CellFault]:
-    """Faults of cells that their column does not take."""
+    """Faults of cells that do not fit their column."""
     reasons = ((name, _wrong(cell, MACHINE[name])) for name, cell in row.items() if name in MACHINE)
     return [CellFault(place, name, *wrong) for name, wrong in reasons if wrong]
 
 
 def in_row(fault: CellFault, numbers: Sequence[int]) -> CellFault:
-    """A fault by the row of the table in place of its phase, where the phases of its axis stand in such rows."""
+    """Fault with the row of the table in place of its phase, where the axis's phases are rows of that table."""
     reason = fault.reason
     phase = int(str(reason.values["number"])) - 1 if reason.template == OF_PHASE else len(numbers)
     if phase >= len(numbers):
@@ -142,7 +136,7 @@ def in_row(fault: CellFault, numbers: Sequence[int]) -> CellFault:
 
 
 def as_parquet(table: pa.Table) -> bytes:
-    """A table to be kept."""
+    """Table as Parquet, to be kept."""
     sink = io.BytesIO()
     pq.write_table(table, sink, compression="zstd")
     return sink.getvalue()
@@ -152,8 +146,8 @@ def as_parquet(table: pa.Table) -> bytes:
 
 
 def _wrong(cell: Any, column: InputColumn) -> tuple[Sentence, str] | None:
-    """Reason and code for a cell that its column does not take; None for one that it takes, and for none."""
-    if column.by_size and not column.is_list:  # a number or an object; the models say what is neither
+    """Reason and code for a cell that does not fit its column; None for one that does, and for an empty one."""
+    if (column.by_size and not column.is_list) or column.kind == "points":  # the models judge these values
         return None
     kind, template, code = RIGHT.get(column.kind, NUMBER)
     wanted: Any = list[kind | None] if column.is_list else kind  # type: ignore[valid-type]

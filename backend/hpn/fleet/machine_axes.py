@@ -1,7 +1,7 @@
-"""Axes of a machine as a table in list form: its own values by their paths, and what only a machine has of an axis.
+"""Axes of a machine as a table in list form: own values by their paths, and the fields that only a machine's axes have.
 
-A row is an axis by its number. What a column can't hold, such as a motion, or a value that leaves the axis open, stands
-as JSON in `rest`, so that the table has everything that the axis has.
+A row is an axis by its number. A value that no column can hold, such as a motion or a value that leaves the axis open,
+stands as JSON in `rest`, so that the table has everything that the axis has.
 """
 
 import json
@@ -20,6 +20,7 @@ from hpn.documents.axis import Axis
 from hpn.documents.revision import Frozen, FrozenAxis
 from hpn.fleet.columns import AXIS, COLUMNS, MACHINE, OF_MACHINE, InputColumn, is_list
 from hpn.fleet.tables import LONGEST_TEXT
+from hpn.words.fields import whole
 from hpn.words.wording import N_
 
 Json = dict[str, Any]
@@ -29,7 +30,7 @@ NO_OBJECT = N_("must be a JSON object")
 
 
 def table_of(document: Frozen) -> pa.Table:
-    """Table of the axes of a document in their order; a column that none of them fills is left out."""
+    """Table of the axes of a document in their order; columns that no axis fills are left out."""
     rows = [_row(axis) for axis in document.axes]
     used = {name for row in rows for name, value in row.items() if value is not None}
     required = [name for name, column in COLUMNS.phases.items() if column.required]
@@ -40,14 +41,14 @@ def table_of(document: Frozen) -> pa.Table:
 
 
 def parquet(document: Frozen) -> bytes:
-    """The table as Parquet."""
+    """Table of a document's axes as Parquet."""
     content = BytesIO()
     pq.write_table(table_of(document), content)
     return content.getvalue()
 
 
 def csv(document: Frozen) -> bytes:
-    """The table as CSV, lists as JSON in their cells."""
+    """Table of a document's axes as CSV, lists as JSON in their cells."""
     table, content = table_of(document), BytesIO()
     for place, field in enumerate(table.schema):
         if is_list(field.type):
@@ -58,7 +59,7 @@ def csv(document: Frozen) -> bytes:
 
 
 def axis_of(row: Mapping[str, Any]) -> Axis:
-    """The axis that a row stands for; raises ValidationError as the model does."""
+    """Axis of a row; raises ValidationError as the model."""
     application = COLUMNS.application_of(row)
     if not application["duty_cycle"]["phases"]:
         del application["duty_cycle"]["phases"]
@@ -68,16 +69,11 @@ def axis_of(row: Mapping[str, Any]) -> Axis:
     quantity = row.get("quantity")
     return Axis(
         name=row.get("axis_name"),
-        quantity=1 if quantity is None else _whole(quantity),
+        quantity=1 if quantity is None else whole(quantity),
         without=tuple(row.get("without") or ()),
         application=_joined(application, _rest(row["rest"])) if row.get("rest") else application,
         **own,
     )
-
-
-def _whole(number: Any) -> Any:
-    """A whole number as an integer; the model refuses any other value."""
-    return int(number) if isinstance(number, float) and number.is_integer() else number
 
 
 def _rest(text: str) -> Json:
@@ -94,7 +90,7 @@ def _rest(text: str) -> Json:
 
 
 def _joined(one: Json, other: Json) -> Json:
-    """An object with everything that is in another one, too."""
+    """First object with all members of the second, joined at every depth."""
     joined = dict(one)
     for name, value in other.items():
         both = isinstance(value, dict) and isinstance(joined.get(name), dict)
@@ -109,12 +105,12 @@ def _row(axis: FrozenAxis) -> Json:
     rest: Json = json.loads(bytes(axis.application))
     row: Json = {AXIS: axis.number, "axis_name": axis.name, "quantity": axis.quantity, "note": axis.note}
     row |= {"ordering_code": axis.ordering_code, "without": list(axis.without) or None}
-    row |= _phases(rest) | {column.name: _taken(rest, column) for column in COLUMNS.others.values()}
+    row |= _phases(rest) | {column.name: _move_out(rest, column) for column in COLUMNS.others.values()}
     return row | {"rest": json.dumps(rest) if rest else None}
 
 
 def _phases(rest: Json) -> Json:
-    """Lists of the phases of an application, which lacks them then; nothing where a list can't hold one."""
+    """Lists of an application's phases, moved out of it; empty where a list can't hold a phase."""
     cycle = rest.get("duty_cycle")
     phases = cycle.get("phases") if isinstance(cycle, dict) else None
     if not isinstance(phases, list) or not phases or not all(map(_is_plain, phases)):
@@ -127,14 +123,14 @@ def _phases(rest: Json) -> Json:
 
 
 def _is_plain(phase: Any) -> bool:
-    """True for a phase of which a list can hold every field."""
+    """True for a phase whose every field fits in a list."""
     if not isinstance(phase, dict) or not phase:
         return False
     return all(name in COLUMNS.phases and _fits(COLUMNS.phases[name], value) for name, value in phase.items())
 
 
-def _taken(rest: Json, column: InputColumn) -> Any:
-    """The cell of a column, whose value the application lacks then; None where it has none that fits."""
+def _move_out(rest: Json, column: InputColumn) -> Any:
+    """Cell of a column, moved out of the application; None where it has no value that fits."""
     *parts, last = column.path
     owners = [rest]
     for part in parts:
@@ -149,21 +145,30 @@ def _taken(rest: Json, column: InputColumn) -> Any:
     del owners[-1][last]
     for owner, part in zip(reversed(owners[:-1]), reversed(parts), strict=True):
         _drop_empty(owner, part)
-    return json.dumps(value) if column.by_size else value
+    return json.dumps(value) if column.by_size or column.kind == "points" else value
 
 
 def _fits(column: InputColumn, value: Any) -> bool:
-    """True for a value that the column, or the list in it, can hold."""
+    """True for a value that fits in the column, or in its lists."""
     if value is None:
         return column.is_list
     if isinstance(value, bool):
         return column.kind == "boolean"
+    if column.kind == "points":
+        return isinstance(value, list) and all(map(_is_of_numbers, value))
     if isinstance(value, str):
         return column.kind == "string" and 0 < len(value) <= LONGEST_TEXT
     if column.by_size and isinstance(value, dict):
-        return all(isinstance(each, float | int) and not isinstance(each, bool) for each in value.values())
+        return _is_of_numbers(value)
     is_number = isinstance(value, float | int) and column.kind in ("number", "integer")
     return is_number and abs(value) < LARGEST and (isinstance(value, float) or int(float(value)) == value)
+
+
+def _is_of_numbers(value: Any) -> bool:
+    """True for an object of numbers."""
+    return isinstance(value, dict) and all(
+        isinstance(each, float | int) and not isinstance(each, bool) for each in value.values()
+    )
 
 
 def _drop_empty(owner: Json, name: str) -> None:

@@ -1,4 +1,4 @@
-"""Opening the tables of a fleet: their formats by suffix, and the columns that must and may be there."""
+"""Tables of a fleet: their formats by suffix, and their required and allowed columns."""
 
 import stat
 from collections import Counter
@@ -22,10 +22,10 @@ FORMATS: dict[str, type[AxisTable]] = {
     ".feather": ArrowTable,
     ".csv.gz": GzipCsvTable,
 }
-"""Formats that are read, by suffix."""
+"""Readable formats, by suffix."""
 
 MOST_PROBLEMS = 20
-"""Wrong columns that an error names."""
+"""Most wrong columns that an error names."""
 
 
 def open_axes(
@@ -34,26 +34,26 @@ def open_axes(
     content: bytes | None = None,
     columns: Mapping[str, InputColumn] = COLUMNS.all,
 ) -> AxisTable:
-    """The table of phases or of axes in a file, or in bytes under its name; raises FleetError for columns that are
-    missing, unknown or of a wrong type."""
+    """Table of phases or of axes in a file, or in bytes under its name; raises FleetError for columns that are missing,
+    unknown or of a wrong type."""
     suffix = suffix_of(path)
     if suffix is None:
         raise FleetError(f"{path}: the suffix must be one of {', '.join(FORMATS)}")
     if content is None:
         _require_file(path)
     table = FORMATS[suffix](path, ignored, content, columns)
-    if isinstance(table, CsvTable) and (said := wrong_encoding(table.head)):
-        raise FleetError(f"{path}: {said}")
+    if isinstance(table, CsvTable) and (reason := wrong_encoding(table.head)):
+        raise FleetError(f"{path}: {reason}")
     return _usable(table)
 
 
 def axes_in_memory(table: pa.Table, ignored: Sequence[str] = ()) -> AxisTable:
-    """A table of Arrow that is in memory; raises FleetError as `open_axes` does."""
+    """Table of Arrow in memory; raises FleetError as `open_axes`."""
     return _usable(TableInMemory(table, ignored))
 
 
 def _usable(table: AxisTable) -> AxisTable:
-    """The table without the indices of pandas; raises FleetError for its columns."""
+    """Table without the indices of pandas; raises FleetError for wrong columns."""
     known = (AXIS, *table.columns)
     table.ignored += tuple(name for name in table.indices if name not in known and name not in table.ignored)
     _require(table, [*known], [AXIS, *(column.name for column in COLUMNS.phases.values() if column.required)])
@@ -74,7 +74,7 @@ def _require(table: AxisTable, allowed: list[str], required: list[str]) -> None:
     others = [f"column {name} is missing" for name in required if name not in table.names]
     others += [f"column {name:.80} is there twice" for name, count in Counter(table.names).items() if count > 1]
     if not others:
-        others += table.wrong_types()
+        others += filter(None, map(table.wrong_type, table.names))
     if wrong := len(unknown) + len(others):
         problems = [*(_unknown(name, allowed) for name in unknown[:MOST_PROBLEMS]), *others][:MOST_PROBLEMS]
         more = [f"{wrong - MOST_PROBLEMS} more"] if wrong > MOST_PROBLEMS else []
@@ -83,5 +83,5 @@ def _require(table: AxisTable, allowed: list[str], required: list[str]) -> None:
 
 def _unknown(name: str, allowed: list[str]) -> str:
     close = likeness(name, allowed)
-    said = f"; it looks like {close}" if close else ""
-    return f"column {name!r:.80} is unknown{said}"
+    hint = f"; it looks like {close}" if close else ""
+    return f"column {name!r:.80} is unknown{hint}"

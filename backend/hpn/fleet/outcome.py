@@ -1,4 +1,4 @@
-"""From a table of axes in list form to their answers: a row for each axis, and a row for each fault."""
+"""Answers to a table of axes in list form: a row for each axis, and a row for each fault."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain
@@ -18,26 +18,26 @@ from hpn.engine.checks import CHECKS
 from hpn.engine.evaluation import SUITABLE, UNRATED, Evaluation, Worst, evaluate
 from hpn.fleet.axes import Axes, BoolArray, IntArray, cells_of
 from hpn.fleet.columns import AXIS, COLUMNS
-from hpn.fleet.faults import CellFault, kept, text_of
+from hpn.fleet.faults import CellFault, cell_of, text_of
 from hpn.fleet.tables import RowBatch
 from hpn.fleet.toleranced import have_tolerances, over_tolerances
 from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_, Sentence
 
 MOST_FAULTS = 20
-"""Faults that are listed of one axis."""
+"""Most faults of one axis in the list."""
 
 DISAGREED = Sentence(
     N_("is rejected by the rules for columns but accepted for a single axis; please report it with this axis")
 )
-"""Reason of a row on which both disagree, a fault of the service that ends no fleet."""
+"""Reason of a row on which the two rules disagree: a fault of the service, which does not end a fleet."""
 
 
 LENGTHS = N_("has {found} phases where torque_Nm has {count}")
 
 ROW, FAULTS = "row", "faults"
-"""Columns that no file has: of faults and candidates the row of their axis among the answers that they come with; of
-answers the reasons of an axis that is rejected, as they are kept."""
+"""Columns that are in no file: the row of a fault's or candidate's axis among the answers beside it, and the reasons of
+a rejected axis among the answers, in stored form."""
 
 
 def answer_fields(axis: pa.DataType) -> pa.Schema:
@@ -76,9 +76,9 @@ def outcome(
     with_candidates: bool = False,
     placed: Callable[[CellFault], CellFault] = lambda fault: fault,
 ) -> dict[str, pa.Table]:
-    """Answers to axes, their faults, and their candidates where they are wanted, by kind.
+    """Answers to axes, their faults, and on request their candidates, by kind.
 
-    `placed` says where in a table of the caller a fault is.
+    `placed` moves a fault to its place in the caller's table.
     """
     axis, count = batch.rows[AXIS], batch.rows.num_rows
     is_faulty = np.zeros(count, np.bool_)
@@ -104,7 +104,7 @@ CODES = [check.code for check in CHECKS]
 
 
 class _Answers:
-    """Columns of the answers, filled chunk by chunk; what is not filled is null."""
+    """Columns of the answers, filled chunk by chunk; empty places are null."""
 
     def __init__(self, count: int) -> None:
         self.selected, self.runner_up, self.governing = (np.full(count, -1, np.int32) for _ in range(3))
@@ -117,7 +117,7 @@ class _Answers:
         self.designations: list[str] = []
 
     def add(self, evaluation: Evaluation, places: IntArray) -> None:
-        """Take the answers of some axes."""
+        """Add the answers of some axes."""
         suits = evaluation.verdict == SUITABLE
         count = suits.sum(axis=-1)
         best, has_gear, figures = evaluation.foremost(suits), count > 0, evaluation.case.figures
@@ -139,17 +139,17 @@ class _Answers:
         self.runner_up[places] = np.where(count > 1, names[evaluation.foremost(suits)], -1)
 
     def _add_worst(self, worst: Worst, places: IntArray, best: IntArray, has_gear: BoolArray) -> None:
-        """Take the worst cases of the selected gears."""
+        """Add the worst cases of the selected gears."""
         judged, rows = worst.evaluation, np.arange(len(places))
         codes = np.array([CODES.index(check.code) for check in judged.checks], np.int32)
-        has_gear = has_gear & worst.given
+        has_gear = has_gear & worst.has_tolerances
         rated = has_gear & (judged.verdict[rows, best] != UNRATED)
         self.holds[places] = np.where(has_gear, judged.verdict[rows, best] == SUITABLE, -1)
         self.worst_utilisation[places] = np.where(has_gear, judged.utilisation[rows, best], np.nan)
         self.worst_governing[places] = np.where(rated, codes[judged.governing[rows, best]], -1)
 
     def table(self, axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
-        """The answers, with what was wrong."""
+        """Answers with the faults of rejected axes."""
         columns = [
             axis,
             _named(self.selected, self.designations),
@@ -189,7 +189,7 @@ def _finite(values: FloatArray) -> pa.Array:
 
 
 def _rejected(axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
-    """A row for each fault."""
+    """Table with a row for each fault."""
     rows = pa.array([fault.row for fault in faults], pa.int64())
     reasons = [(fault.column, fault.code, fault.reason.text) for fault in faults]
     texts = zip(*reasons, strict=True) if reasons else [(), (), ()]
@@ -198,19 +198,19 @@ def _rejected(axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
 
 
 def _reasons(count: int, faults: Sequence[CellFault]) -> tuple[pa.Array, pa.Array]:
-    """Faults of each axis in one text, and as they are kept; null where there are none."""
+    """Faults of each axis as one text, and in stored form; null for an axis without faults."""
     by_row = dict[int, list[CellFault]]()
     for fault in faults:
         by_row.setdefault(fault.row, []).append(fault)
     texts: list[str | None] = [None] * count
     cells = texts.copy()
     for row, own in by_row.items():
-        texts[row], cells[row] = text_of(own), kept(own)
+        texts[row], cells[row] = text_of(own), cell_of(own)
     return pa.array(texts, pa.string()), pa.array(cells, pa.string())
 
 
 def _all_faults(batch: RowBatch, is_sound: BoolArray, catalogue: Catalogue) -> list[CellFault]:
-    """Every fault in the order of the rows, the first of each axis alone where there are too many."""
+    """Faults in the order of the rows, at most MOST_FAULTS of each axis."""
     known: dict[int, list[CellFault]] = {row: [] for row in np.flatnonzero(~is_sound).tolist()}
     for fault in batch.faults:
         known[fault.row].append(fault)
@@ -220,7 +220,7 @@ def _all_faults(batch: RowBatch, is_sound: BoolArray, catalogue: Catalogue) -> l
 
 
 def _faults_of(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list[CellFault]:
-    """Faults of the lists, or else those that the models or the selection find."""
+    """Faults of an axis's lists, else those that the models or the selection find."""
     faults = [] if cells.get(AXIS) is not None else [CellFault(row, AXIS, Sentence(REQUIRED), "missing")]
     if all_faults := faults + [CellFault(row, *fault) for fault in faults_of_lists(cells)]:
         return all_faults
@@ -234,7 +234,7 @@ def _faults_of(row: int, cells: Mapping[str, Any], catalogue: Catalogue) -> list
 
 
 def faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, str]]:
-    """Column, reason and code of lists of phases that are missing or of other lengths."""
+    """Column, reason and code of lists of phases that are missing or differ in length."""
     count = len(cells.get("torque_Nm") or ())
     for name, column in COLUMNS.phases.items():
         values = cells.get(name)
@@ -245,7 +245,7 @@ def faults_of_lists(cells: Mapping[str, Any]) -> Iterator[tuple[str, Sentence, s
 
 
 def located(row: int, location: Location, sentence: Sentence, code: str) -> CellFault:
-    """Fault at a place of an application, by the column of a table that this is."""
+    """Fault at a place of an application, with the column of that place."""
     column, place = COLUMNS.column_at(location)
     if place:
         template, name, value = place
@@ -280,18 +280,18 @@ def candidate_fields(axis: pa.DataType) -> pa.Schema:
 
 
 class _Candidates:
-    """Every candidate of every axis, best first."""
+    """Candidates of all axes, best first."""
 
     def __init__(self) -> None:
         self.of_axis: dict[int, list[Candidate]] = {}
 
     def add(self, evaluation: Evaluation, places: IntArray) -> None:
-        """Take the candidates of some axes."""
+        """Add the candidates of some axes."""
         for index, place in enumerate(places.tolist()):
             self.of_axis[place] = list(candidates_of(evaluation, index))
 
     def table(self, axis: pa.ChunkedArray) -> pa.Table:
-        """A row for each candidate, in the order of the axes."""
+        """Table with a row for each candidate, in the order of the axes."""
         places = sorted(self.of_axis)
         rows = [candidate for place in places for candidate in self.of_axis[place]]
         of = np.repeat(np.array(places, np.int64), [len(self.of_axis[place]) for place in places])
@@ -307,7 +307,7 @@ class _Candidates:
 
 
 def _plain(value: Any) -> Any:
-    """A field of a candidate as a cell: a list as one text, null where it is empty."""
+    """Field of a candidate as a cell: a tuple becomes one text, null where it is empty."""
     return (", ".join(value) or None) if isinstance(value, tuple) else value
 
 

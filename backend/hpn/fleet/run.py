@@ -1,4 +1,4 @@
-"""Sizing a fleet: its table is read once, their axes worked on by threads or a cluster, and the answers written."""
+"""Run of a fleet: its table is read once, threads or a cluster work on the axes, and the answers are written."""
 
 import ctypes
 import fcntl
@@ -23,30 +23,30 @@ from hpn.fleet.tables import AxisTable, Progress, RowBatch
 from hpn.fleet.writing import Outcomes, unfinished
 
 SLICE_AXES, SLICE_WITH_CANDIDATES = 16_384, 1_024
-"""Axes that are evaluated in one go."""
+"""Axes evaluated at once, without and with candidates."""
 
 Outcome = dict[str, pa.Table]
 Size = Callable[[RowBatch], Outcome]
 Engine = Callable[[Size, Iterator[RowBatch]], Iterator[Outcome]]
-"""Sizes batches of axes, several at once, and gives what comes of them in their order; few are read ahead."""
+"""Function that sizes batches of axes, several at once, and yields their outcomes in order; it reads few ahead."""
 
 Watch = Callable[[Progress], None]
-"""Takes how much has been read, whenever some axes are done."""
+"""Function that receives the progress of reading, each time some axes are done."""
 
 Use = Callable[[Iterator[pa.Table]], None]
-"""Takes the answers when they are whole; an error of it keeps every file from its name."""
+"""Function that receives the complete answers; an error in it keeps every file from its name."""
 
 
 # --- Engines ----------------------------------------------------------------------------------------------------------
 
 
 def here(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
-    """Engine of the thread that reads."""
+    """Engine in the thread that reads."""
     return map(size, batches)
 
 
 def threads(workers: int) -> Engine:
-    """Engine of so many threads, beside the one that reads and writes; a single one does all."""
+    """Engine of `workers` threads beside the one that reads and writes; with 1 that thread does all the work."""
 
     def run(size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
         with ThreadPoolExecutor(workers) as pool:
@@ -56,7 +56,7 @@ def threads(workers: int) -> Engine:
 
 
 def in_order(pool: Any, workers: int, size: Size, batches: Iterator[RowBatch]) -> Iterator[Outcome]:
-    """Outcomes of batches that a pool works on, in their order; two wait for each worker, so that memory is bounded."""
+    """Outcomes of batches in a pool, in their order; two batches wait for each worker, so that memory is bounded."""
     submitted = (pool.submit(size, batch) for batch in batches)
     under_way = deque(islice(submitted, 2 * workers))
     try:
@@ -69,13 +69,13 @@ def in_order(pool: Any, workers: int, size: Size, batches: Iterator[RowBatch]) -
 
 
 MEMORY = {"MALLOC_TRIM_THRESHOLD_": (-1, 200_000_000), "MALLOC_MMAP_THRESHOLD_": (-3, 30_000_000)}
-"""Variables of glibc, and its parameters, with bytes from which on memory goes back to the system."""
+"""Variables of glibc, each with its parameter of mallopt and the bytes from which on memory goes back to the system."""
 
 
 def keep_memory() -> None:
-    """Keep the memory that arrays give back for the next ones: asking the system anew takes half of a chunk's time."""
+    """Keep freed memory of arrays for the next ones: new memory from the system takes half of a chunk's time."""
     library = ctypes.CDLL(None)
-    if hasattr(library, "mallopt"):  # of glibc; another C library does as it likes
+    if hasattr(library, "mallopt"):  # only glibc has it
         for parameter, value in MEMORY.values():
             library.mallopt(parameter, value)
 
@@ -91,10 +91,10 @@ def size_fleet(
     use: Use = lambda _: None,
     note_ignored: Callable[[Path, str], None] = lambda path, name: None,
 ) -> dict[str, int]:
-    """Size all axes; gives the numbers of rows of the files by kind, which appear whole at the end or not at all.
+    """Size all axes; returns the number of rows of each file by kind. All files appear complete at the end, or none.
 
-    `use` takes the answers before they have their name, for files that are written along with them; `note_ignored`
-    takes the columns that are ignored though nobody asked for that. Raises FleetError for input that can't be used.
+    `use` receives the answers before their file has its name, for files written with them; `note_ignored` receives the
+    ignored columns that the order does not name. Raises FleetError for unusable input.
     """
     order.require_usable()
     table = open_axes(order.axes, order.ignored)
@@ -116,7 +116,7 @@ def size_fleet(
 
 
 def size_table(table: AxisTable, catalogue: Catalogue, kind: str = "answers", engine: Engine = here) -> pa.Table:
-    """Size all axes of a table; gives the answers, or what else is wanted of them, in memory."""
+    """Size all axes of a table; returns the table of a kind in memory, by default the answers."""
     outcomes = Outcomes(None, table.axis_type, [kind])
     _size(table, catalogue, engine, outcomes, with_candidates=kind == "candidates")
     return outcomes.table(kind, table.written_axis_type, outcomes.torn())
@@ -142,7 +142,7 @@ def _size(
 
 @contextmanager
 def _alone(answers: Path) -> Iterator[None]:
-    """Hold the unfinished answers for this run; FleetError where another run has them."""
+    """Hold the unfinished answers for this run; raises FleetError where another run holds them."""
     with unfinished(answers).open("ab") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -10,15 +10,16 @@ import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 BINS = 10
-"""Parts of the whole that utilisation is counted in."""
+"""Number of intervals of utilisation."""
 
 Counts = tuple[tuple[str, int], ...]
-"""Names with how many axes each has, most first."""
+"""Names with their numbers of axes, the largest number first."""
 
 
 @dataclass(frozen=True)
 class AxisCounts:
-    """Counts over all axes. `checks` are those that govern the selected gears; `utilisation` counts these by tenths."""
+    """Counts over all axes. `checks` are the governing checks of selected gears; `utilisation` counts these in
+    tenths."""
 
     axes: int
     rejected: int
@@ -29,7 +30,7 @@ class AxisCounts:
 
     @property
     def selected(self) -> int:
-        """Axes that have a gear."""
+        """Number of axes with a gear."""
         return self.axes - self.rejected - self.unsuitable
 
 
@@ -53,7 +54,7 @@ def _counted(names: pa.Array) -> dict[str, int]:
 
 
 def _in_bins(utilisation: pa.Array) -> NDArray[np.int64]:
-    """Counts by tenths, each with its upper end; what rounding puts beyond the whole belongs to the last."""
+    """Counts by tenths, each with its upper end; values that rounding puts above 1 count in the last."""
     used = utilisation.drop_null().to_numpy(zero_copy_only=False)
     return np.bincount(np.searchsorted(np.arange(1, BINS) / BINS, used), minlength=BINS)
 

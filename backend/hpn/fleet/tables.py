@@ -1,7 +1,6 @@
 """Tables of axes in files, read once from the first row to the last, some rows at a time.
 
-The rows have the columns of `columns.py` in their types. A cell that can't be read is null and a fault, and reading
-goes on.
+The rows have the columns of `columns.py` in their types. An unreadable cell is null and a fault, and reading goes on.
 """
 
 from abc import ABC, abstractmethod
@@ -21,35 +20,35 @@ from hpn.fleet.order import FleetError
 from hpn.words.wording import Sentence
 
 BATCH_AXES, BATCH_PHASES = 16_384, 131_072
-"""Rows that are read at once, in list and in long form."""
+"""Rows read at once, in list and in long form."""
 
 LONGEST_TEXT = 1000
-"""Characters of a text: axes come back in every file, and what is wrong in its reason."""
+"""Most characters of a text: names of axes return in every file, and faulty texts in their reason."""
 
 TOO_LONG = Sentence(BOUNDS["string_too_long"], {"most": str(LONGEST_TEXT)})
 
 
 class RowBatch(NamedTuple):
-    """Some rows of a table, and what is wrong with their cells."""
+    """Some rows of a table, and the faults of their cells."""
 
     rows: pa.Table
     faults: Sequence[CellFault] = ()
 
     def between(self, start: int, end: int) -> "RowBatch":
-        """The rows from one up to another."""
+        """Rows from `start` up to, but not with, `end`."""
         faults = [fault.moved(-start) for fault in self.faults if start <= fault.row < end]
         return RowBatch(self.rows.slice(start, end - start), faults)
 
 
 def joined(batches: Sequence[RowBatch]) -> RowBatch:
-    """Batches of the same columns one after another."""
+    """Batches of the same columns joined in their order."""
     starts = np.cumsum([0, *(batch.rows.num_rows for batch in batches)]).tolist()
     faults = [f.moved(start) for start, batch in zip(starts, batches, strict=False) for f in batch.faults]
     return RowBatch(pa.concat_tables([batch.rows for batch in batches]), faults)
 
 
 class Progress(NamedTuple):
-    """Size of a table that has been read, its whole size where that is known, and the unit of both."""
+    """Amount that has been read, the whole amount where it is known, and the unit of both."""
 
     done: int
     total: int | None
@@ -57,7 +56,7 @@ class Progress(NamedTuple):
 
 
 class AxisTable(ABC):
-    """A table of axes in a file, or in bytes under its name; FleetError names one that can't be read."""
+    """Table of axes in a file, or in bytes under its name; raises FleetError where it can't be read."""
 
     def __init__(
         self,
@@ -72,81 +71,77 @@ class AxisTable(ABC):
 
     @property
     def names(self) -> Sequence[str]:
-        """Names of the columns that are read."""
+        """Names of the columns to read."""
         return [name for name in self.all_names if name not in self.ignored]
 
     @property
     @abstractmethod
     def all_names(self) -> Sequence[str]:
-        """Names of the columns."""
+        """Names of all columns."""
 
     @property
     def indices(self) -> Sequence[str]:
-        """Columns that pandas wrote of an index without a meaning, as far as the format names them."""
+        """Columns of an index without a meaning that pandas wrote, as far as the format tells them."""
         return [name for name in self.all_names if INDEX.fullmatch(name)]
 
     @property
     @abstractmethod
     def is_in_list_form(self) -> bool:
-        """True where a row is an axis, with lists of phases; else a row is a phase."""
+        """True where a row is an axis with lists of phases; False where a row is a phase."""
 
     @property
     @abstractmethod
     def axis_type(self) -> pa.DataType:
-        """Type of the axes while they are worked on: text or integers."""
+        """Type of the names of axes in between: text or integers."""
 
     @property
     def written_axis_type(self) -> pa.DataType:
-        """Type of the axes in files that have it."""
+        """Type of the names of axes in files that can have it."""
         return self.axis_type
 
     has_untyped_axes = False
-    """True where axes are text until all of them are known to be whole numbers."""
+    """True where names of axes are text until all of them are known to be whole numbers."""
 
     @property
     def batch_rows(self) -> int:
-        """Rows that are read at once where the format leaves the choice."""
+        """Rows read at once where the format leaves the choice."""
         return BATCH_AXES if self.is_in_list_form else BATCH_PHASES
 
     def batches(self) -> Iterator[RowBatch]:
-        """The rows; a text that is too long is a fault; the name of an axis is cut."""
+        """Rows; a too long text is a fault and null, a too long name of an axis is cut."""
         return map(with_short_texts, self._batches())
 
     @abstractmethod
     def _batches(self) -> Iterator[RowBatch]:
-        """The rows, as they stand."""
+        """Rows as they stand."""
 
     def type_of(self, name: str) -> pa.DataType:
-        """Type that a column is read as."""
+        """Arrow type of a column in the rows."""
         if name == AXIS:
             return self.axis_type
         column = self.columns[name]
         return column.type if self.is_in_list_form or name not in COLUMNS.phases else column.type.value_type
 
-    def wrong_types(self) -> Iterator[str]:
-        """Columns whose type can't hold what belongs into them, in words; formats without types have none."""
-        return filter(None, map(self.wrong_type, self.names))
-
     def wrong_type(self, name: str) -> str:
-        """Words for a column of a wrong type; nothing where it can be read."""
+        """Error text for a column of an unusable type; blank for a usable one."""
         return ""
 
     @property
     def empty(self) -> pa.Table:
-        """A table of its columns without rows."""
+        """Table with its columns and without rows."""
         return pa.schema([(name, self.type_of(name)) for name in self.names]).empty_table()
 
     def unreadable(self, error: Exception, where: str = "") -> FleetError:
-        """The error of a file that can't be read."""
+        """Error of an unreadable file."""
         what = str(error).strip().partition("\n")[0]
         return FleetError(f"{self.path}: {where}can’t be read as {self.path.suffix[1:]}: {what}")
 
 
 def with_short_texts(batch: RowBatch) -> RowBatch:
-    """The rows; a text that is too long is a fault."""
+    """Rows; a too long text is a fault and null, a too long name of an axis is cut."""
     rows, faults = batch.rows, list(batch.faults)
     for place, name in enumerate(batch.rows.column_names):
-        if name in LONG_TEXTS:
+        if name in LONG_TEXTS or (name in COLUMNS.others and COLUMNS.others[name].kind == "points"):
             continue
         column = batch.rows[name]
         long = _too_long(column.combine_chunks() if column.num_chunks != 1 else column.chunk(0))
@@ -163,7 +158,7 @@ def with_short_texts(batch: RowBatch) -> RowBatch:
 
 
 def _too_long(column: pa.Array) -> NDArray[np.bool_]:
-    """Cells that are such a text, or a list with one."""
+    """True for cells with a too long text, or with a list that has one, shape (N,)."""
     mask = np.zeros(len(column), np.bool_)
     if is_text(column.type):
         mask |= np.asarray(pc.fill_null(pc.greater(pc.utf8_length(column), LONGEST_TEXT), False))

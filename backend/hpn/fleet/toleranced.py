@@ -1,4 +1,4 @@
-"""Axes with tolerances: each is read by the models, and judged with its worst cases."""
+"""Axes with tolerances: the models read each one, and the engine judges it with its worst cases."""
 
 from collections import defaultdict
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ READ_AT_ONCE = 1024
 
 
 def have_tolerances(rows: pa.Table) -> BoolArray:
-    """True for axes with something in a column of a tolerance, shape (N,)."""
+    """True for axes with a value in a column of a tolerance, shape (N,)."""
     mask = np.zeros(rows.num_rows, np.bool_)
     for name in rows.column_names:
         if tolerance_column(name) is not None:
@@ -31,7 +31,7 @@ def have_tolerances(rows: pa.Table) -> BoolArray:
 
 
 def over_tolerances(rows: pa.Table, wanted: BoolArray, catalogue: Catalogue) -> Iterator[tuple[Evaluation, IntArray]]:
-    """Evaluations of axes with their worst cases, and their places; an axis with a fault is left out."""
+    """Evaluations of axes with their worst cases, and the axes' places; an axis with a fault is left out."""
     places = np.flatnonzero(wanted).tolist()
     for start in range(0, len(places), READ_AT_ONCE):
         groups: dict[GearList, list[tuple[int, Application, Application]]] = defaultdict(list)
@@ -41,7 +41,7 @@ def over_tolerances(rows: pa.Table, wanted: BoolArray, catalogue: Catalogue) -> 
                 equipped = with_listed_motor(application, catalogue)
                 groups[gears_for(application, catalogue)].append((place, application, equipped))
             except (ValidationError, InputError):
-                continue  # its faults are found where those of all axes are
+                continue  # its faults are found with those of all axes
         for gears, rows_of_gears in groups.items():
             for chunk in chunks_of([len(application.duty_cycle.load_phases) for _, application, _ in rows_of_gears]):
                 some = [rows_of_gears[at] for at in chunk.tolist()]

@@ -1,4 +1,4 @@
-"""Tables of axes whose columns have types: Parquet and Arrow IPC."""
+"""Tables of axes with typed columns: Parquet and Arrow IPC."""
 
 import json
 from abc import abstractmethod
@@ -15,7 +15,7 @@ import pyarrow.parquet as pq
 import pyarrow.types as kinds
 from numpy.typing import NDArray
 
-from hpn.fleet.columns import AXIS, INDEX, InputColumn, is_list, is_text, plain_type
+from hpn.fleet.columns import AXIS, INDEX, TEXTS, InputColumn, is_list, is_text, plain_type
 from hpn.fleet.faults import CellFault
 from hpn.fleet.tables import AxisTable, Progress, RowBatch
 from hpn.fleet.uuids import is_uuid, text_of
@@ -23,24 +23,24 @@ from hpn.words.wording import N_, Sentence
 
 NOT_WHOLE = Sentence(N_("must be text or a whole number"))
 UNREADABLE = (pa.ArrowException, OSError, UnicodeDecodeError)
-"""Errors of Arrow for a file that it can't read."""
+"""Errors of Arrow for an unreadable file."""
 
 FILE_MARK = b"ARROW1"
-"""Beginning of an Arrow file; a stream has another."""
+"""Beginning of an Arrow file; a stream begins otherwise."""
 
 
 class TypedTable(AxisTable):
-    """A table whose columns have types."""
+    """Table with typed columns."""
 
     @property
     @abstractmethod
-    def given(self) -> pa.Schema:
-        """Columns with their types, as they stand."""
+    def schema(self) -> pa.Schema:
+        """Columns with their types in the file."""
 
     @property
     def indices(self) -> Sequence[str]:
         try:
-            named = json.loads((self.given.metadata or {}).get(b"pandas", b"{}"))["index_columns"]
+            named = json.loads((self.schema.metadata or {}).get(b"pandas", b"{}"))["index_columns"]
         except (ValueError, TypeError, KeyError, RecursionError):
             named = []
         named = named if isinstance(named, list) else []
@@ -49,30 +49,30 @@ class TypedTable(AxisTable):
     @property
     def all_names(self) -> Sequence[str]:
         try:
-            names: Sequence[str] = self.given.names
+            names: Sequence[str] = self.schema.names
         except UnicodeDecodeError as error:
             raise self.unreadable(error) from None
         return names
 
     @property
     def is_in_list_form(self) -> bool:
-        return "torque_Nm" in self.names and is_list(self.given.field("torque_Nm").type)
+        return "torque_Nm" in self.names and is_list(self.schema.field("torque_Nm").type)
 
     @property
     def axis_type(self) -> pa.DataType:
-        type = plain_type(self.given.field(AXIS).type)
+        type = plain_type(self.schema.field(AXIS).type)
         if _may_be_whole(type):
             return pa.int64()
         return pa.string() if kinds.is_null(type) else type
 
     @property
     def written_axis_type(self) -> pa.DataType:
-        type = self.given.field(AXIS).type
+        type = self.schema.field(AXIS).type
         return type if is_uuid(type) else self.axis_type
 
     @contextmanager
     def readable(self, where: str = "") -> Iterator[None]:
-        """Raise FleetError in place of Arrow's errors of a file, but for memory: that is of the machine."""
+        """Raise FleetError in place of Arrow's errors of a file; an error of memory is the machine's, and passes."""
         try:
             yield
         except MemoryError:
@@ -81,16 +81,16 @@ class TypedTable(AxisTable):
             raise self.unreadable(error, where) from None
 
     def type_of(self, name: str) -> pa.DataType:
-        """Type that a column is read as: numbers that may be given by size are numbers or texts, as they stand."""
+        """Arrow type of a column in the rows; a column that may be by size keeps its own kind, numbers or texts."""
         wanted = super().type_of(name)
-        if name == AXIS or not self.columns[name].by_size or is_text(plain_type(self.given.field(name).type)):
+        if name == AXIS or not self.columns[name].by_size or is_text(plain_type(self.schema.field(name).type)):
             return wanted
         return pa.float64()
 
     def wrong_type(self, name: str) -> str:
         if name != AXIS and name not in self.columns:
             return ""
-        type = self.given.field(name).type
+        type = self.schema.field(name).type
         if name == AXIS:
             is_right = is_text(self.axis_type) or kinds.is_integer(self.axis_type)
             wanted = "text, integers or UUIDs"
@@ -101,7 +101,7 @@ class TypedTable(AxisTable):
         return "" if is_right else f"column {name} is {type!s:.80}, where {wanted} belong"
 
     def batch(self, rows: pa.RecordBatch) -> RowBatch:
-        """Rows in the types that are read."""
+        """Rows in their Arrow types, with the faults of axes that are not whole."""
         columns, faults = [], list[CellFault]()
         for name in self.names:
             column = _plain(rows.column(rows.schema.get_field_index(name)))
@@ -113,14 +113,12 @@ class TypedTable(AxisTable):
 
 
 def _words(column: InputColumn, wanted: pa.DataType) -> str:
-    item = (
-        "texts" if column.kind == "string" else "numbers, or objects by size in JSON," if column.by_size else "numbers"
-    )
+    item = "texts" if column.kind in TEXTS else "numbers, or objects by size in JSON," if column.by_size else "numbers"
     return f"lists of {item}" if is_list(wanted) else item
 
 
 def _plain(column: pa.Array) -> pa.Array:
-    """The values themselves, in the type that `plain_type` gives."""
+    """Plain values of a column, in the type of `plain_type`."""
     type = column.type
     if kinds.is_dictionary(type):
         return _plain(column.dictionary).take(column.indices)
@@ -137,7 +135,7 @@ def _plain(column: pa.Array) -> pa.Array:
 
 
 def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
-    """The column in a type; decimals by their digits, which Arrow's own cast misses by a last bit in one of eight."""
+    """Column in a type; decimals by their digits, since Arrow's own cast misses the last bit in one of eight."""
     type = column.type
     if is_list(type) and kinds.is_decimal(type.value_type):
         column = column.cast(pa.list_(pa.string()))
@@ -147,19 +145,19 @@ def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
 
 
 def _may_be_whole(type: pa.DataType) -> bool:
-    """True for axes that can be integers though their type is none: floats, as pandas makes of integers with a gap."""
+    """True for a numeric type of axes that may hold integers: pandas makes floats of integers with a gap."""
     return bool(kinds.is_floating(type) or (kinds.is_decimal(type) and type.scale == 0))
 
 
 def _whole(column: pa.Array) -> tuple[pa.Array, NDArray[np.bool_]]:
-    """The column with null where a number is not whole, and which are not."""
+    """Column with null where a number is not whole, and True for these cells, shape (N,)."""
     values = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
     wrong = np.asarray(column.is_valid()) & ~((values == np.floor(values)) & (np.abs(values) < 2.0**63))
     return pc.if_else(pa.array(wrong), None, column), wrong
 
 
 class ParquetTable(TypedTable):
-    """A Parquet file."""
+    """Table in a Parquet file."""
 
     @cached_property
     def _file(self) -> pq.ParquetFile:
@@ -167,12 +165,8 @@ class ParquetTable(TypedTable):
             return pq.ParquetFile(self.path if self.content is None else pa.BufferReader(self.content))
 
     @cached_property
-    def _schema(self) -> pa.Schema:
+    def schema(self) -> pa.Schema:
         return self._file.schema_arrow
-
-    @property
-    def given(self) -> pa.Schema:
-        return self._schema
 
     def _batches(self) -> Iterator[RowBatch]:
         done, total = 0, self._file.metadata.num_rows
@@ -181,12 +175,12 @@ class ParquetTable(TypedTable):
                 for rows in self._file.iter_batches(self.batch_rows, [group], list(self.names)):
                     done += rows.num_rows
                     self.progress = Progress(done, total, "rows")
-                    rows.validate(full=True)  # Arrow takes texts as they stand, UTF-8 or not
+                    rows.validate(full=True)  # Arrow takes any bytes as text, UTF-8 or not
                     yield self.batch(rows)
 
 
 class ArrowTable(TypedTable):
-    """An Arrow file, or a stream."""
+    """Table in an Arrow file or stream."""
 
     def _open(self) -> Any:
         file = pa.OSFile(str(self.path)) if self.content is None else pa.BufferReader(self.content)
@@ -195,13 +189,9 @@ class ArrowTable(TypedTable):
         return pa.ipc.open_stream(file) if is_stream else pa.ipc.open_file(file)
 
     @cached_property
-    def _schema(self) -> pa.Schema:
+    def schema(self) -> pa.Schema:
         with self.readable(), self._open() as reader:
             return reader.schema
-
-    @property
-    def given(self) -> pa.Schema:
-        return self._schema
 
     def _batches(self) -> Iterator[RowBatch]:
         with self._open() as reader:
@@ -223,14 +213,14 @@ class ArrowTable(TypedTable):
 
 
 class TableInMemory(TypedTable):
-    """A table of Arrow that is in memory, of whatever library."""
+    """Table of Arrow in memory, from any library."""
 
     def __init__(self, table: pa.Table, ignored: Sequence[str] = ()) -> None:
         super().__init__(Path("frame"), ignored)
         self._table = table
 
     @property
-    def given(self) -> pa.Schema:
+    def schema(self) -> pa.Schema:
         return self._table.schema
 
     def _batches(self) -> Iterator[RowBatch]:

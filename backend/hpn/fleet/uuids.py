@@ -1,4 +1,4 @@
-"""UUIDs of Arrow, which axes may be: text while they are worked on, and UUIDs again in files that have the type."""
+"""UUIDs of Arrow as names of axes: text in between, and UUIDs again in files with that type."""
 
 from uuid import UUID
 
@@ -30,6 +30,6 @@ def text_of(uuids: pa.Array) -> pa.Array:
 
 
 def uuids_of(texts: pa.ChunkedArray) -> pa.Array:
-    """The UUIDs that some texts stand for."""
+    """UUIDs of texts."""
     values = [None if text is None else UUID(text).bytes for text in texts.to_pylist()]
     return pa.ExtensionArray.from_storage(pa.uuid(), pa.array(values, pa.binary(BYTES)))

@@ -1,7 +1,7 @@
-"""From outcomes to the files of a fleet, each whole under its name at the end or not at all.
+"""Files of a fleet from outcomes: all appear complete under their names at the end, or none.
 
-Outcomes are set aside first: the type of axes in CSV, and whether a name is there twice, is known when all
-have been read.
+Outcomes are set aside first: the type of axes in CSV, and names that occur twice, are known only when all rows have
+been read.
 """
 
 import os
@@ -19,7 +19,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from hpn.fleet.columns import AXIS, is_text
-from hpn.fleet.faults import TWICE, CellFault, kept, text_of
+from hpn.fleet.faults import TWICE, CellFault, cell_of, text_of
 from hpn.fleet.order import format_of
 from hpn.fleet.outcome import FAULTS, FIELDS, ROW
 from hpn.fleet.uuids import is_uuid, uuids_of
@@ -28,7 +28,7 @@ WHOLE = "^(0|-?[1-9][0-9]{0,17})$"
 
 
 def unfinished(path: Path, suffix: str = "") -> Path:
-    """Name of a file until it is whole, beside the one that it gets then; the next run writes over what a kill left."""
+    """Name of an unfinished file, beside its final name; the next run overwrites remains of a killed run."""
     return path.with_name(f".unfinished.{path.name}{suffix}")
 
 
@@ -44,7 +44,7 @@ WITHOUT_UUIDS = (".csv",)
 
 
 def _typed(table: pa.Table, schema: pa.Schema) -> pa.Table:
-    """The table with the types of a schema, UUIDs out of their texts."""
+    """Table with the types of a schema, with UUIDs from their texts."""
     place = schema.get_field_index(AXIS)
     if not is_uuid(schema.field(place).type):
         return table.cast(schema)
@@ -52,13 +52,13 @@ def _typed(table: pa.Table, schema: pa.Schema) -> pa.Table:
 
 
 def columns_of(kind: str, axis: pa.DataType) -> pa.Schema:
-    """Columns that the outcome of a kind is given in."""
+    """Columns of the file of a kind."""
     schema = FIELDS[kind](axis)
     return pa.schema([field for field in schema if field.name not in (ROW, FAULTS)])
 
 
 class Outcomes:
-    """Outcomes of the axes so far, by kind: a batch for each, in files beside the answers, or in memory without any."""
+    """Outcomes of axes by kind, batch by batch: in files beside the answers, or in memory where `answers` is None."""
 
     def __init__(self, answers: Path | None, axis: pa.DataType, kinds: Sequence[str]) -> None:
         kinds = list(dict.fromkeys(("answers", *kinds)))
@@ -69,7 +69,7 @@ class Outcomes:
         self._files = {kind: pa.ipc.new_stream(target, FIELDS[kind](axis)) for kind, target in targets.items()}
         self._hashes = [np.empty(0, np.int64)]
         self.are_whole = True
-        """True for axes that are all written as whole numbers."""
+        """True while all axes are written as whole numbers."""
 
     def add(self, tables: Mapping[str, pa.Table]) -> None:
         """Add the outcome of some axes."""
@@ -82,7 +82,7 @@ class Outcomes:
             file.write_batch(pa.RecordBatch.from_arrays(columns, schema=tables[kind].schema))
 
     def close(self) -> None:
-        """End the files; they can be read from then on."""
+        """End the files; from then on they can be read."""
         for file in self._files.values():
             file.close()
         self._contents = {kind: memory.getvalue() for kind, memory in self._memory.items()}
@@ -93,7 +93,7 @@ class Outcomes:
             path.unlink(missing_ok=True)
 
     def write(self, path: Path, kind: str, axis: pa.DataType, torn: frozenset[Any]) -> int:
-        """Write the file of a kind with axes of a type, as far as its format has it; gives its number of rows."""
+        """Write the file of a kind, with axes of a type where its format has it; returns its number of rows."""
         axis, rows = pa.string() if is_uuid(axis) and format_of(path) in WITHOUT_UUIDS else axis, 0
         with closing(WRITERS[format_of(path)](str(path), columns_of(kind, axis))) as writer:
             for table in self._tables(kind, axis, torn):
@@ -104,18 +104,18 @@ class Outcomes:
         return rows
 
     def table(self, kind: str, axis: pa.DataType, torn: frozenset[Any]) -> pa.Table:
-        """The outcome of a kind as one table."""
+        """Outcome of a kind as one table."""
         return pa.concat_tables([columns_of(kind, axis).empty_table(), *self._tables(kind, axis, torn)])
 
     def _tables(self, kind: str, axis: pa.DataType, torn: frozenset[Any]) -> Iterator[pa.Table]:
-        """The outcome of a kind, with axes of a type and one row for each torn one."""
+        """Outcome of a kind, with axes of a type and one row for each torn axis."""
         schema, seen = columns_of(kind, axis), set[Any]()
         for answers, table in zip(self._read("answers"), self._read(kind), strict=True):
             whole = _whole(kind, table, answers, torn, seen) if torn else table
             yield _typed(whole.select(schema.names), schema)
 
     def answers(self, torn: frozenset[Any]) -> Iterator[pa.Table]:
-        """The answers, with the reasons of axes that are rejected; names of axes are text."""
+        """Answers, with the reasons of rejected axes; names of axes are text."""
         seen = set[Any]()
         for table in self._read("answers"):
             whole = _whole("answers", table, table, torn, seen) if torn else table
@@ -128,7 +128,7 @@ class Outcomes:
                 yield pa.Table.from_batches([batch])
 
     def torn(self) -> frozenset[Any]:
-        """Axes that are there more than once, each of which is rejected whole."""
+        """Axes that occur more than once; each is rejected as a whole."""
         ascending = np.sort(np.concatenate(self._hashes))
         repeated = set(ascending[1:][ascending[1:] == ascending[:-1]].tolist())
         counts = Counter[Any]()
@@ -141,7 +141,7 @@ class Outcomes:
 
 
 def _whole(kind: str, table: pa.Table, answers: pa.Table, torn: frozenset[Any], seen: set[Any]) -> pa.Table:
-    """Outcome of some axes, with one row for each torn one; those that were seen have had it."""
+    """Outcome of some axes, with one row for each torn axis: `seen` are the torn axes that have had theirs."""
     axes, mask = answers[AXIS].to_pylist(), list[bool]()
     for axis in axes:
         mask.append(axis not in seen)
@@ -159,9 +159,9 @@ def _whole(kind: str, table: pa.Table, answers: pa.Table, torn: frozenset[Any], 
 
 
 def _with_error(answers: pa.Table, is_twice: NDArray[np.bool_]) -> pa.Table:
-    """Answers in which a torn axis has an error and nothing else."""
+    """Answers in which a torn axis has only an error."""
     fault = CellFault(0, AXIS, TWICE, "repeated")
-    columns, fields = [answers[AXIS]], {"error": text_of([fault]), FAULTS: kept([fault])}
+    columns, fields = [answers[AXIS]], {"error": text_of([fault]), FAULTS: cell_of([fault])}
     for field in list(answers.schema)[1:]:
         instead = pa.scalar(fields.get(field.name), field.type)
         columns.append(pc.if_else(pa.array(is_twice), instead, answers[field.name]))

@@ -1,4 +1,4 @@
-"""Symbols of what the form has in rows: phases, moves and bodies, one column each."""
+"""Symbols of the form's tables: a symbol for each column of phases, moves and bodies."""
 
 from collections.abc import Collection, Iterable, Sequence
 
@@ -10,7 +10,7 @@ from hpn.physics.motion.moves import DEFAULT_JERK_SHARE
 from hpn.tables.inputs import NAME, PHASE
 
 PHASE_SYMBOLS = tuple(Symbol(each.role, (each.place,), each.kind) for each in (*PHASE, NAME))
-"""Repeated once per phase, all of equal length."""
+"""Symbols of phases: repeated once per phase, all of equal length."""
 
 _OF_A_MOVE = {"mj": f"{DEFAULT_JERK_SHARE:g}", "mx": "0"}
 """Defaults of a move."""
@@ -34,7 +34,7 @@ def _of_moves(way: str, speed: str, acceleration: str, external: str) -> tuple[S
 
 TURN_SYMBOLS = _of_moves("angle_deg", "speed_rpm", "acceleration_deg_per_s2", "external_torque_Nm")
 STROKE_SYMBOLS = _of_moves("distance_mm", "speed_mm_per_s", "acceleration_mm_per_s2", "external_force_N")
-"""Repeated once per move, all of equal length; a move carries loads and its name as a phase does."""
+"""Symbols of moves: repeated once per move, all of equal length; a move has loads and a name like a phase."""
 
 BODY_SYMBOLS = (
     Symbol("qs", ("body", "shape"), "text"),
@@ -48,31 +48,31 @@ BODY_SYMBOLS = (
     Symbol("qe", ("body", "distance_mm"), placeholder="0"),
     Symbol("qn", ("body", "count"), "whole", placeholder="1"),
 )
-"""Bodies of the form whose moment of inertia is worked out, repeated once per body; no link has them."""
+"""Symbols of bodies, from which the form calculates a moment of inertia, repeated once per body; no link has them."""
 
 
 _PLACES = {
     name: k
     for k, name in enumerate((NAME.role, "mv", "ms", "mt", "mn", *OPTIONAL["ramps"], EVEN, *OPTIONAL["unequal"]))
 }
-"""Places of columns whose order in a table is another than in a link."""
+"""Places in a table of columns that stand elsewhere in a link."""
 
 
 def table_columns(symbols: Iterable[Symbol], groups: Collection[str]) -> list[Symbol]:
-    """Columns of phases or moves that a table has, the name first and the ramps of a move behind its speed."""
+    """Columns of phases or moves in a table, the name first and the ramps of a move after its speed."""
     by_name = {symbol.name: symbol for symbol in symbols}
     columns = shown_columns(by_name, groups)
     return [by_name[name] for name in sorted(columns, key=lambda name: _PLACES.get(name, len(_PLACES)))]
 
 
 def columns_used(phases: Sequence[Phase]) -> tuple[Symbol, ...]:
-    """Columns of a table of phases: torque, speed and duration, and of loads and what varies the groups in use."""
+    """Columns of a table of phases: torque, speed and duration, and the used groups of loads and varying figures."""
     used = {s.name for s in PHASE_SYMBOLS if any(getattr(phase, s.path[0]) is not None for phase in phases)}
     return tuple(PHASE_BY_NAME[name] for name in used_columns(PHASE_BY_NAME, used))
 
 
 def move_symbols(mechanism: str) -> tuple[Symbol, ...]:
-    """Symbols of the moves of a mechanism: an unknown one turns."""
+    """Symbols of the moves of a mechanism; an unknown mechanism is rotary."""
     return STROKE_SYMBOLS if mechanism in CLASSES else TURN_SYMBOLS
 
 

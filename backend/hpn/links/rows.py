@@ -18,10 +18,11 @@ OPTIONAL: Mapping[str, tuple[str, ...]] = {
 """Columns of phases and moves that appear where they are used, by the button that shows them."""
 
 SHARED = ("names", "loads")
-"""Those that phases and moves have by the same names."""
+"""Groups that phases and moves have by the same names."""
 
 EVEN = "ma"
-"""Acceleration of both ramps, or of the first beside a deceleration: no column beside ramps by time unless used."""
+"""Acceleration of both ramps, or of the first beside a deceleration; beside ramps by time it has a column only
+if used."""
 
 OF_ANY_ROW = (NAME.role, *LOADS)
 
@@ -35,7 +36,7 @@ MOVE_COLUMNS: Mapping[str, tuple[str, ...]] = {
     "modified_sine": ("ms", "mt", *_EVERY_MOVE),
     "dwell": ("mt", *_EVERY_MOVE),
 }
-"""Columns that a move of a profile has."""
+"""Columns of a move, by its profile."""
 
 _EVERY_BODY = ("qm", "qe", "qn")
 BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
@@ -45,28 +46,28 @@ BODY_COLUMNS: Mapping[str, tuple[str, ...]] = {
     "block": (*_EVERY_BODY, "qr", "ql", "qw", "qh"),
     "point_mass": _EVERY_BODY,
 }
-"""Columns that a body of a shape has."""
+"""Columns of a body, by its shape."""
 
 TOLERANCE = "tol"
-"""Tolerance of an input of the form, repeated."""
+"""Field for a tolerance of an input of the form, repeated."""
 
 TEXT = "phases"
-"""Field of the form that holds the phases as text, a phase on each line, where they are too many for a table."""
+"""Field of the form with the phases as text, a phase on each line, where they are too many for a table."""
 
 ROWS_IN_TABLE = 100
-"""A longer duty cycle is edited as text: a field for each of its figures would weigh megabytes."""
+"""Most rows of a table; a longer duty cycle is edited as text, since a field for each figure would weigh megabytes."""
 
 WIDTHS = {"names": 10, "varying": 9, "loads": 5}
-"""Cells of a line of that text by what the phases have."""
+"""Cells of a line of that text, by the groups that the phases have."""
 
 
 def groups_of(used: Collection[str]) -> set[str]:
-    """Groups of optional columns of which one is used."""
+    """Groups of optional columns with a used one."""
     return {group for group, names in OPTIONAL.items() if any(name in used for name in names)}
 
 
 def shown_columns(names: Iterable[str], groups: Collection[str]) -> list[str]:
-    """Columns of phases or moves, of the optional ones those of some groups alone."""
+    """Columns of phases or moves; optional ones only from the given groups."""
     hidden = {name for group, columns in OPTIONAL.items() if group not in groups for name in columns}
     if "ramps" in groups and "unequal" not in groups and EVEN not in groups:
         hidden.add(EVEN)
@@ -74,7 +75,7 @@ def shown_columns(names: Iterable[str], groups: Collection[str]) -> list[str]:
 
 
 def used_columns(names: Iterable[str], used: Collection[str]) -> list[str]:
-    """Columns of phases or moves, of the optional ones the groups of which one is used."""
+    """Columns of phases or moves; optional ones only from groups with a used column."""
     return shown_columns(names, groups_of(used))
 
 
@@ -88,7 +89,7 @@ class FormTable:
         self.rows: list[dict[str, str]] = []
 
     def add(self, name: str, text: str) -> None:
-        """Put a cell below the last one of its column; rows beyond the first that is too many are left out."""
+        """Put a cell below the last one of its column; rows after the first one above `most` are left out."""
         k = self.counts.get(name, 0)
         self.counts[name] = k + 1
         if k == len(self.rows) and k <= self.most:
@@ -97,7 +98,7 @@ class FormTable:
             self.rows[k][name] = text
 
     def show(self, names: Sequence[str]) -> None:
-        """Have these columns alone, and at least a blank row."""
+        """Show only these columns, and at least one blank row."""
         hidden = set(self.names).difference(names)
         added = [name for name in names if name not in self.names]
         self.names = list(names)
@@ -109,7 +110,7 @@ class FormTable:
             self._append()
 
     def widen(self, name: str) -> None:
-        """Have one more column, blank as yet."""
+        """Add a blank column."""
         if name not in self.names:
             self.names.append(name)
             self.counts[name] = max(self.counts.values(), default=0)
@@ -117,7 +118,7 @@ class FormTable:
                 row.setdefault(name, "")
 
     def press(self, do: str, k: int) -> str | None:
-        """Edit the rows as one button does; the element to go on from, if it does anything."""
+        """Edit the rows as one button does; returns the id of the element to focus, or None where nothing changes."""
         if do == "add":
             self._append()
             return self._first_of(len(self.rows) - 1)
@@ -138,7 +139,7 @@ class FormTable:
         self.rows.append(dict.fromkeys(self.names, ""))
 
     def _first_of(self, k: int) -> str:
-        """Element of the first cell of a row."""
+        """Id of the first cell of a row."""
         return f"{self.names[0]}-{k}"
 
 
@@ -147,14 +148,13 @@ def filled(row: Mapping[str, str]) -> dict[str, str]:
     return {name: text for name, text in row.items() if text.strip()}
 
 
-def _cells(line: str) -> list[str]:
-    """Cells of a line, separated by tabs, semicolons or blanks; a tenth is the name, with all that follows."""
-    return re.split(r" *[;\t] *| +", line.strip(" "), maxsplit=len(PHASE_ROLES))
-
-
 def cells_of(text: str) -> list[tuple[str, str]]:
-    """Cells of phases in a text: T, n, t, and the others where used, by name; what a line lacks is blank."""
-    rows = [_cells(line) for line in text.rstrip().splitlines()[: MAXIMUM_PHASES + 1]]
+    """Names and cells of phases in a text: T, n, t, and the used ones of the others; a missing cell of a line is blank.
+
+    Tabs, semicolons or blanks separate the cells of a line; the tenth cell is the name, with all that follows.
+    """
+    lines = text.rstrip().splitlines()[: MAXIMUM_PHASES + 1]
+    rows = [re.split(r" *[;\t] *| +", line.strip(" "), maxsplit=len(PHASE_ROLES)) for line in lines]
     columns = {
         name: [row[k] if k < len(row) else "" for row in rows] for k, name in enumerate((*PHASE_ROLES, NAME.role))
     }

@@ -1,4 +1,4 @@
-"""One input: its symbol in links, its place in the application, and how the form shows it."""
+"""Input of the form: its symbol in links, its place in the application, and its appearance."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,12 +15,11 @@ MOTION_PATH = ("duty_cycle", "motion")
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A query name, the field of the application that it stands for, and what the form says beside it.
+    """Query name, its field of the application, and the texts beside it in the form.
 
-    A number `by_size` is one for all sizes, or one for each of some, repeated in links. `choices` are the codes of a
-    text, the first being what counts where none is given. `offered` is a figure of the gears whose values are offered
-    while typing, or such values themselves. `supplied` names the table of the catalogue without which a choice is not
-    offered.
+    A number `by_size` is one number for all sizes, or one for each of some, repeated in links. `choices` are the codes
+    of a text; the first holds where none is given. `offered` is a figure of the gears whose values the form offers, or
+    such values themselves. `supplied` names, for a choice, the table of the catalogue that it needs.
     """
 
     name: str
@@ -35,7 +34,7 @@ class Symbol:
 
     @property
     def place(self) -> str:
-        """Its place as `hpn.words.quantities` names it."""
+        """Place of the input in `hpn.words.quantities`."""
         if self.path[:2] == MOTION_PATH:
             return ".".join(self.path[1:])
         if self.path[0] == "body":
@@ -43,15 +42,15 @@ class Symbol:
         return ".".join(self.path if len(self.path) > 1 or self.path[0] in INPUTS else ("phase", *self.path))
 
     def is_offered(self, choice: str, catalogue: Catalogue) -> bool:
-        """True for a choice that is of use with a catalogue; a link that asks for another is read all the same."""
+        """True for a choice that is usable with a catalogue; links with any other choice are read all the same."""
         return choice not in self.supplied or bool(getattr(catalogue, self.supplied[choice]))
 
     @property
     def named(self) -> Named:
-        """Its name and its sign."""
+        """Name and sign of the input."""
         return QUANTITIES[self.place]
 
     @property
     def unit(self) -> str:
-        """Suffix of its unit, blank for a pure number or a text."""
+        """Suffix of the input's unit, blank for a pure number or a text."""
         return suffix_of(self.path[-1])

@@ -1,6 +1,6 @@
-"""The table of inputs: symbol in links, place in the application, and how the form shows each.
+"""Table of inputs: symbol in links, place in the application, and appearance in the form.
 
-Form, link writer and link reader are loops over it. An input's name and sign stand in `hpn.words.quantities`.
+Form, link writer and link reader are loops over it. An input's name and sign are in `hpn.words.quantities`.
 """
 
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ from hpn.words.wording import N_
 
 @dataclass(frozen=True, slots=True)
 class FormGroup:
-    """Inputs under one heading of the form, in its order; one that is folded opens where something is given in it."""
+    """Inputs under one heading of the form, in its order; a folded group opens where an input in it is given."""
 
     code: str
     title: str
@@ -32,12 +32,12 @@ class FormGroup:
 
     @property
     def symbols(self) -> tuple["Symbol", ...]:
-        """Its inputs."""
+        """Inputs of the group."""
         return tuple(BY_NAME[name] for name in self.names)
 
 
 YEAR = N_("A year (yr) counts as 8766 h, without a standstill.")
-"""Note beside a life: years are read as 365.25 days of operation."""
+"""Hint beside a life: a year is 365.25 days of operation."""
 
 SYMBOLS = (
     Symbol("tp", ("duty_cycle", "pause_s")),
@@ -207,8 +207,17 @@ SYMBOLS = (
     Symbol("Jm", ("requirements", "motor", "inertia_kgm2")),
     Symbol("Jr", ("requirements", "motor", "inertia_ratio")),
     Symbol("md", ("requirements", "motor", "designation"), "text"),
+    Symbol("Tst", ("requirements", "motor", "stall_torque_Nm")),
+    Symbol("mmo", ("requirements", "motor", "weight_kg")),
+    Symbol(
+        "mcv",
+        ("requirements", "motor", "curve"),
+        "curve",
+        hint=N_("A line per point: speed : continuous : peak torque; from 0."),
+    ),
+    Symbol("mnm", ("requirements", "motor", "name"), "text"),
 )
-"""Everything but phases and motion, in the order of a canonical link: one part of an application at a time."""
+"""Inputs except phases and motion, in the order of a canonical link: one part of an application at a time."""
 
 
 def _of_mechanism(name: str, field: str, kind: Kind = "number", hint: str = "") -> Symbol:
@@ -235,10 +244,10 @@ MECHANISM_SYMBOLS = (
     _of_mechanism("inc", "mechanism.incline_deg", hint=N_("If positive, positive motion raises the mass.")),
     _of_mechanism("mu", "mechanism.friction_coefficient"),
 )
-"""A mechanism and where its motion starts, in the order of a canonical link."""
+"""Inputs of a mechanism and of the start of its motion, in the order of a canonical link."""
 
 FIRST_OF_MECHANISM = ("d", "h", "ml", "mc", "J", "Tf")
-"""Inputs of a mechanism that nearly every one needs, as the form shows them; the others are folded."""
+"""Inputs that nearly every mechanism needs, in the order of the form; the others are folded."""
 
 _IN_FORM = (*FIRST_OF_MECHANISM, "mg", "rg", "th0", "inc", "b", "mu", "Ff", "etam", "im")
 
@@ -251,9 +260,9 @@ _OF_ROTARY = {"J": N_("Of all that turns, including a mass off the shaft.")}
 
 @cache
 def mechanism_symbols(mechanism: str) -> tuple[Symbol, ...]:
-    """Symbols that a mechanism has beside its kind, in the order of the form, each with its default as placeholder.
+    """Symbols of a mechanism besides its kind, in the order of the form, each with its default as placeholder.
 
-    An unknown mechanism turns.
+    An unknown mechanism is rotary.
     """
     model = CLASSES.get(mechanism, Rotary)
     hints = _OF_ROTARY if model is Rotary else _OF_TURNING
@@ -277,7 +286,9 @@ GROUPS = (
         folded=False,
         hint=N_("ratios i and sizes: none selected = all"),
     ),
-    FormGroup("motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md")),
+    FormGroup(
+        "motor", N_("Motor"), ("nm", "Tm", "Tmn", "eta", "nmr", "Jm", "Jr", "JL", "md", "mnm", "Tst", "mmo", "mcv")
+    ),
     FormGroup(
         "brake",
         N_("Brake of the emergency stop"),
@@ -296,12 +307,12 @@ GROUPS = (
     ),
     FormGroup("limits", N_("Properties and environment"), ("bm", "bl", "K3", "m", "L", "ta", "aa")),
 )
-"""The form below its duty cycle, which the pause belongs to."""
+"""Groups of the form below its duty cycle, which includes the pause."""
 
 BY_NAME = {symbol.name: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 BY_PATH = {symbol.path: symbol for symbol in (*SYMBOLS, *MECHANISM_SYMBOLS)}
 COMMON_NAMES = {BY_PATH[path].name: name for name in COMMON if (path := tuple(name.split("."))) in BY_PATH}
-"""Paths of what an axis may have from its machine, by the names of links."""
+"""Paths of values that an axis may have from its machine, by their names in links."""
 
 _SINGLE = (*PHASE_SYMBOLS, *SYMBOLS, *MECHANISM_SYMBOLS)
 LABELS = {
@@ -318,19 +329,22 @@ LABELS = {
     **labels.LABELS,
     **labels.OF_AXIS,
 }
-"""Names of the fields of the form in a list of errors."""
+"""Names of the form's fields in a list of errors."""
 
 AXIS_INPUTS = Inputs(
     *(Input(each.name, each.place.removeprefix("duty_cycle."), each.named, each.kind, each.many) for each in SYMBOLS)
 )
-"""Inputs that a table of axes may have columns for."""
+"""Inputs that a table of axes may have as columns."""
 
 
 BY_SIZE = frozenset(symbol.name for symbol in SYMBOLS if symbol.kind == "by_size")
+CURVES = frozenset(symbol.name for symbol in SYMBOLS if symbol.kind == "curve")
+MERGED = BY_SIZE | CURVES
+"""Inputs with several numbers in one text, which may also be repeated."""
 
 
 def units_of(mechanism: str) -> Mapping[str, str]:
-    """Names that take a number, and the suffix of its unit, which of a move depends on the mechanism."""
+    """Names of inputs of numbers, with the suffix of their unit; units of moves depend on the mechanism."""
     symbols = (*move_symbols(mechanism), *_SINGLE, *BODY_SYMBOLS)
     return {
         symbol.name: symbol.unit

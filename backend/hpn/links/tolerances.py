@@ -1,11 +1,11 @@
-"""Tolerances in links: `tol`, repeated, each a symbol with a row of its own where it has one, and how far it may lie.
+"""Tolerances in links: `tol`, repeated; each is a symbol, with a row where it has one, and the deviation.
 
-`T:10p` is 10 percent of every torque, `T.2:10p` of that in the second row, `J:0.05` an amount in the input's own unit,
-`Jm:0p/15p` what lies below and above the value.
+`T:10p` is 10 percent of every torque, `T.2:10p` of the torque in the second row, `J:0.05` an amount in the input's own
+unit, `Jm:0p/15p` the deviations below and above the value.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from hpn.application import Application
@@ -28,19 +28,19 @@ TWICE = N_("{symbol} has a tolerance twice")
 
 
 class Side(NamedTuple):
-    """How far an input may lie to one side: a number as a text, in percent or in the input's unit."""
+    """Deviation of an input to one side: a number as a text, in percent or in the input's unit."""
 
     number: str
     is_percent: bool
 
 
 class Sides(str):
-    """A tolerance as a link has it, with its one part, or those below and above the value."""
+    """Tolerance in the form of a link, with its one part, or those below and above the value."""
 
     parts: tuple[Side, ...]
 
     def __new__(cls, parts: Iterable[Side]) -> "Sides":
-        """A text that behaves as the tolerance in a link would."""
+        """Tolerance of these parts; as a text it equals the tolerance in a link."""
         own = tuple(parts)
         text = super().__new__(cls, "/".join(f"{side.number}{'p' if side.is_percent else ''}" for side in own))
         text.parts = own
@@ -48,7 +48,7 @@ class Sides(str):
 
 
 def sides_of(text: str) -> Sides:
-    """Parts of a tolerance of a link."""
+    """Parts of a tolerance in a link."""
     if isinstance(text, Sides):
         return text
     parts = [part.strip() for part in text[:LONGEST].split("/")] if text.strip() else []
@@ -56,7 +56,7 @@ def sides_of(text: str) -> Sides:
 
 
 def read(symbol: str, row: int | None, sides: Sides, mechanism: str | None) -> tuple[str, dict[str, Any]] | Sentence:
-    """Path of a tolerance and its value, or what is wrong with it; `mechanism` is that of a motion."""
+    """Path of a tolerance and its value, or the sentence on its fault; `mechanism` is that of a motion, else None."""
     path = path_of(symbol, row, mechanism)
     if path is None:
         return Sentence(UNKNOWN, {"symbol": symbol if row is None else f"{symbol}.{row + 1}"})
@@ -70,7 +70,7 @@ def read(symbol: str, row: int | None, sides: Sides, mechanism: str | None) -> t
 
 
 def read_text(text: str, mechanism: str | None) -> tuple[str, dict[str, Any]] | Sentence:
-    """The same of a whole text such as `T.2:10p`."""
+    """Path and value of a tolerance in a text such as `T.2:10p`, or the sentence on its fault."""
     match = WRITTEN.fullmatch(text.strip()) if len(text) <= LONGEST else None
     if match is None:
         return Sentence(NO_TOLERANCE)
@@ -85,29 +85,25 @@ def _deviation(side: Side) -> dict[str, float] | Sentence:
 
 
 def path_of(symbol: str, row: int | None, mechanism: str | None) -> str | None:
-    """Path of an input by its symbol and row; None for one that there is none of."""
+    """Path of an input by its symbol and row, counted from 0; None for an unknown one."""
     if row is None:
         if symbol in PHASE_BY_NAME:
             return PHASE_BY_NAME[symbol].path[0]
-        return _path(BY_NAME[symbol].path) if symbol in BY_NAME else None
+        return ".".join(BY_NAME[symbol].path).removeprefix("duty_cycle.") if symbol in BY_NAME else None
     if mechanism is None:
         return f"phases.{row}.{PHASE_BY_NAME[symbol].path[0]}" if symbol in PHASE_BY_NAME else None
     fields = {each.name: each.path[-1] for each in move_symbols(mechanism)}
     return f"{MOVES}.{row}.{fields[symbol]}" if symbol in fields else None
 
 
-def _path(place: Sequence[str]) -> str:
-    return ".".join(place[1:] if place[0] == "duty_cycle" else place)
-
-
 def written(application: Application) -> Iterator[str]:
-    """Tolerances of an application as a link has them, in the order of symbols; those of one row last, row by row."""
+    """Tolerances of an application as in a link, in the order of symbols; those of single rows last, row by row."""
     for path, tolerance in sorted((application.tolerances or {}).items(), key=lambda each: _order(each[0])):
         yield text_of(path, tolerance)
 
 
 def _order(path: str) -> tuple[int, int]:
-    """Row of a path, -1 for none, and its place among the symbols."""
+    """Row of a path, -1 without one, and its place among the symbols."""
     *_, row, field = ("", *path.split("."))
     if row.isdigit():
         return int(row), COLUMNS.index(field) if field in COLUMNS else 0
@@ -115,12 +111,12 @@ def _order(path: str) -> tuple[int, int]:
 
 
 def text_of(path: str, tolerance: Tolerance) -> str:
-    """Tolerance of the input that a path names as a link has it; KeyError for a path that is none."""
+    """Tolerance of the input of a path in the form of a link; KeyError for an unknown path."""
     return f"{symbol_of(path)}:{_written(tolerance)}"
 
 
 def symbol_of(path: str) -> str:
-    """Symbol of the input that a path names, with its row where it names one."""
+    """Symbol of the input of a path, with its row, counted from 1, where it has one."""
     *table, field = path.split(".")
     if table and table[-1].isdigit():
         by_leaf: Mapping[str, Any] = PHASE_BY_LEAF if table[0] == "phases" else MOVE_BY_LEAF

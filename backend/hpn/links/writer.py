@@ -1,6 +1,6 @@
-"""The canonical link of an application; `link_reader.parse` reads it, and what people write by hand."""
+"""Canonical link of an application; `link_reader.parse` reads it, and links written by hand."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import groupby
 from typing import Any
 from urllib.parse import quote
@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from hpn.application import (
     Application,
     Brake,
+    CurvePoint,
     Drive,
     DutyCycle,
     EmergencyStop,
@@ -19,7 +20,7 @@ from hpn.application import (
 )
 from hpn.application.motion import Motion
 from hpn.links.row_symbols import PHASE_SYMBOLS, move_symbols
-from hpn.links.symbols import MECHANISM_SYMBOLS, SYMBOLS
+from hpn.links.symbols import CURVES, MECHANISM_SYMBOLS, SYMBOLS
 from hpn.links.tolerances import written
 from hpn.tables.by_size import BySize, Part
 from hpn.words.designations import OTHERS
@@ -27,7 +28,7 @@ from hpn.words.designations import OTHERS
 _EMPTY_LOAD = OutputLoad()
 
 _WHERE_USED = PHASE_SYMBOLS[3:-1]
-"""Figures of phases that a link has where one of them is given."""
+"""Figures of phases that a link has where a phase has one."""
 
 _MODELS: tuple[type[BaseModel], ...] = (
     DutyCycle,
@@ -40,16 +41,16 @@ _MODELS: tuple[type[BaseModel], ...] = (
     Motor,
 )
 _FIELDS = [
-    [(s.path[-1], s.name, model.model_fields[s.path[-1]].default, s.many) for s in symbols]
+    [(s.path[-1], s.name, model.model_fields[s.path[-1]].default, s.many or s.name in CURVES) for s in symbols]
     for model, (_, symbols) in zip(_MODELS, groupby(SYMBOLS, lambda symbol: symbol.path[:-1]), strict=True)
 ]
-"""Fields of each part of an application, as a link gives them: name, symbol, what needs no mention, whether a list."""
+"""Fields of each part of an application in a link: name, symbol, default (left out of links), and True for a list."""
 
 
 def to_link(application: Application) -> str:
-    """Canonical link of an application: only what differs from the defaults, numbers as short as they can be.
+    """Canonical link of an application: only values that differ from the defaults, numbers as short as possible.
 
-    `parse` gives the same application back; a motor of which nothing is known counts as no motor.
+    `parse` returns the same application; a motor without any figure counts as no motor.
     """
     link = "/?" + _cycle(application)
     for part, fields in zip(_parts(application), _FIELDS, strict=True):
@@ -64,7 +65,7 @@ def to_link(application: Application) -> str:
     if application.tolerances:
         link += "".join(f"&tol={text}" for text in written(application))
     load = application.output_load
-    # A load case without a figure of its own must still be seen to exist.
+    # A load case without a figure of its own must stay visible.
     return link + "&fw=1" if load is not None and load == _EMPTY_LOAD else link
 
 
@@ -94,7 +95,7 @@ def _mechanism(motion: Motion) -> Iterator[str]:
 
 
 def _moves(motion: Motion) -> Iterator[str]:
-    """Moves, each with every figure that one of them has."""
+    """Pairs of moves, each move with every figure that one of them has."""
     fields = type(motion.moves[0]).model_fields
     columns = []
     for symbol in move_symbols(motion.mechanism.type):
@@ -122,7 +123,7 @@ def _parts(application: Application) -> tuple[BaseModel | None, ...]:
 
 
 def _items(value: Any) -> Iterator[Any]:
-    """Values of a field, one after the other: of numbers by size each with its size, but for that of all others."""
+    """Values of a field one by one; numbers by size come with their size, except the one for all other sizes."""
     if not isinstance(value, dict):
         yield value
         return
@@ -130,7 +131,15 @@ def _items(value: Any) -> Iterator[Any]:
         yield number if size == OTHERS else BySize([Part(size, _written(number))])
 
 
-def _written(value: float | str) -> str:
+def point_text(point: Mapping[str, Any]) -> str:
+    """Point of a motor's torque over speed: `speed:continuous:peak`."""
+    values = (point.get(name) for name in CurvePoint.model_fields)
+    return ":".join(_written(float(v)) if isinstance(v, float | int) else "" for v in values)
+
+
+def _written(value: float | str | CurvePoint) -> str:
+    if isinstance(value, CurvePoint):
+        return point_text(value.__dict__)
     if isinstance(value, float):
         return shortened(repr(value))
     if isinstance(value, int):
@@ -139,6 +148,6 @@ def _written(value: float | str) -> str:
 
 
 def shortened(numbers: str) -> str:
-    """Numbers, between ampersands, without zeros and signs that say nothing."""
+    """Numbers between ampersands, without superfluous zeros and signs."""
     text = numbers.replace(".0&", "&").removesuffix(".0")
     return text.replace("e+", "e").replace("e-0", "e-") if "e" in text else text

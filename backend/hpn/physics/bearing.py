@@ -32,7 +32,7 @@ class Curve:
     axial_N: FloatArray
 
     def equivalent_load(self, radial_N: FloatArray, axial_N: FloatArray) -> FloatArray:
-        """Factor by which loads exceed the curve along their own direction; any shape, the same out.
+        """Factor by which loads exceed the curve in their own direction; any shape, the same out.
 
         On the segment between two points with p x d = c, where d is the step to the next point, P = (load x d) / c.
         """
@@ -48,8 +48,8 @@ class Curve:
 def curve_through(points: Sequence[tuple[float, float]]) -> Curve:
     """Curve through (radial_N, axial_N) points in any order.
 
-    Raises CurveError, with the index of the point, where the points do not start on one axis and end on the other or
-    where a ray from the origin would cross the curve more than once (not star-shaped).
+    Raises CurveError, with the index of the point, if the points don't start on one axis and end on the other, or if a
+    ray from the origin would cross the curve more than once (not star-shaped).
     """
     if len(points) < 2:
         raise CurveError(0, "a curve needs at least two points, one on each axis")
@@ -69,7 +69,7 @@ def curve_through(points: Sequence[tuple[float, float]]) -> Curve:
 
 
 class CurveError(ValueError):
-    """Points that make no envelope; `index` names the first wrong one."""
+    """Error for points that make no envelope; `index` is the place of the first wrong one."""
 
     def __init__(self, index: int, detail: str) -> None:
         super().__init__(detail)
@@ -88,7 +88,7 @@ def radial_load_at_centre(
     """Radial load at the shaft's centre in N that loads the bearing no less: F_R max(1, |x| / x_c) + |F_A| y / x_c.
 
     x and x_c are measured from the shaft's shoulder, y from its axis; x is NaN for a load at the centre. An upper bound
-    for any distance of the two bearings behind the shoulder. NaN where x_c is not known and a lever acts.
+    for any distance of the two bearings behind the shoulder. NaN where x_c is unknown and a lever acts.
     """
     F_R, F_A, x, y, x_c = (
         np.asarray(value)
@@ -121,7 +121,7 @@ def mean_equivalent_load(*, equivalent_load: ArrayLike, speed_rpm: ArrayLike, du
     """
     P, n, t = over_phases(equivalent_load, speed_rpm, duration_s)
     weight = np.abs(n) * t
-    P = np.where(weight > 0, P, 0.0)  # what is held must not set the scale
+    P = np.where(weight > 0, P, 0.0)  # holding phases must not set the scale
     largest = P.max(axis=-1)
     r = P / np.where(largest == 0, 1.0, largest)[..., None]
     P_m: FloatArray = largest * np.cbrt(total(weight * (r * r * r)) / total(weight))
@@ -136,7 +136,7 @@ def life_factor(
     reference_speed_rpm: ArrayLike,
     reference_life_h: ArrayLike,
 ) -> FloatArray:
-    """Load factor k = (n_ref L_ref / (n_out_av L_required))^(1/3) that speed and life allow. [-]
+    """Permissible load factor k = (n_ref L_ref / (n_out_av L_required))^(1/3) at speed and required life. [-]
 
     ISO 281. The pause counts in n_out_av, as in equation 17.4.
     """

@@ -1,8 +1,8 @@
 """The handbook's selection equations (chapter 4.1, page 17), one function each, in the handbook's symbols.
 
-Arguments broadcast, so that one case and thousands go through the same lines; a series over the phases lies along the
-last axis. NaN stands for a figure that is not published, infinity for one without a limit: neither raises nor warns.
-Torque and speed enter by magnitude.
+Arguments broadcast, so that one case and thousands go through the same code; a series over the phases lies along the
+last axis. NaN stands for an unpublished figure, infinity for an unlimited one: neither raises nor warns. Torque and
+speed enter by magnitude.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 ROUNDING = 1e-12
-"""Relative tolerance for floating point: a limit that is met exactly passes."""
+"""Relative tolerance for floating point: a figure exactly at its limit passes."""
 
 P = ParamSpec("P")
 
@@ -39,8 +39,8 @@ def over_phases(*series: ArrayLike) -> tuple[FloatArray, ...]:
 def total(values: FloatArray) -> FloatArray:
     """Sum over the last axis, in the order of the phases.
 
-    Shorter cycles are padded with phases of no duration, which so change no bit of it: numpy's own sum adds in an
-    order that depends on the length.
+    Padding of shorter cycles has no duration and thus changes no bit of the sum: numpy's own sum adds in an order that
+    depends on the length.
     """
     result: FloatArray = np.add.accumulate(values, axis=-1)[..., -1]
     return result
@@ -78,7 +78,7 @@ def average_output_torque(*, torque_Nm: ArrayLike, speed_rpm: ArrayLike, duratio
     """
     T, n, t = over_phases(torque_Nm, speed_rpm, duration_s)
     weight = np.abs(n) * t
-    T = np.where(weight > 0, np.abs(T), 0.0)  # what is held must not set the scale
+    T = np.where(weight > 0, np.abs(T), 0.0)  # holding phases must not set the scale
     T_max = T.max(axis=-1)
     damage = weight * power_ten_thirds(T / np.where(T_max == 0, 1.0, T_max)[..., None])
     T_av: FloatArray = T_max * np.power(total(damage) / total(weight), 0.3)
@@ -142,7 +142,7 @@ def allowed_momentary_peaks(*, emergency_stop_torque_Nm: ArrayLike, repeated_pea
 
 @equation
 def emergency_stop_torque_for(*, momentary_peak_count: ArrayLike, repeated_peak_torque_Nm: ArrayLike) -> FloatArray:
-    """Torque in Nm of which equation 17.9 allows so many peaks: T_R (8.5 - log10 N) / 1.5, but never less than T_R."""
+    """Largest torque in Nm for N peaks by equation 17.9: T_R (8.5 - log10 N) / 1.5, but never less than T_R."""
     T_R = np.asarray(repeated_peak_torque_Nm)
     T_k: FloatArray = np.maximum(T_R, T_R * (8.5 - np.log10(momentary_peak_count)) / 1.5)
     return T_k
@@ -161,7 +161,7 @@ def life(
 
     Infinite where T_av is 0 or so small that the result exceeds floating point. NaN where T_N is not published.
     """
-    # The power of a quotient is taken as a quotient of powers: a root for each gear and each axis, none for each pair.
+    # A quotient of powers instead of a power of the quotient: one root per gear and per axis, none per pair.
     rated, average = (power_ten_thirds(np.asarray(torque)) for torque in (rated_torque_Nm, average_torque_Nm))
     reference = np.asarray(life_at_rated_torque_h) * np.asarray(rated_input_speed_rpm)
     L_10: FloatArray = reference * rated / (np.asarray(average_input_speed_rpm) * average)

@@ -1,4 +1,4 @@
-"""Loads on a gear's shaft of the pinion or pulley that sits on it, from the tangential force at its pitch circle."""
+"""Loads on a gear's shaft from the pinion or pulley on it, computed from the tangential force at the pitch circle."""
 
 import numpy as np
 

@@ -1,7 +1,7 @@
-"""Torsional stiffness: how a gear's axis swings, winds up and stands off.
+"""Torsional stiffness: natural frequencies, wind-up and position error of an axis on a gear.
 
 The gear is a spring of its published stiffness K3 between the motor and the load, both rigid. K3 holds above 15 % of
-the rated torque; below it the gear is softer (glossary). Arguments broadcast; NaN stands for what is not known.
+the rated torque; below it the gear is softer (glossary). Arguments broadcast; NaN stands for unknown figures.
 """
 
 import numpy as np

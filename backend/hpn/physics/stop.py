@@ -1,8 +1,8 @@
 """An emergency stop by the brake on the motor: upper bounds of its torque at the gear, its time, angle and energy.
 
 Motor and load are rigid, the gear between them is a spring of stiffness K3 with backlash γ. The bounds hold at any
-instant of the motion, whether the motor goes off before, at, or through the rise of the brake's torque, and until the
-load has come to rest. Arguments broadcast; NaN stands for what is not known.
+instant of the motion, whether the motor switches off before, at, or through the rise of the brake's torque, and until
+the load has come to rest. Arguments broadcast; NaN stands for unknown figures.
 """
 
 from dataclasses import dataclass
@@ -19,8 +19,8 @@ Figure = FloatArray | float
 class BrakeFigures:
     """A brake that stops an axis through a gear; every figure broadcasts.
 
-    Inertias are those of the motor, with the gear's at the input, and of the load at the output; where either is NaN
-    the brake's whole torque counts. `efficiency` is the gear's.
+    The inertias are the motor's, including the gear's at the input, and the load's at the output; if either is NaN the
+    brake's whole torque counts. `efficiency` is the gear's.
     """
 
     torque_Nm: Figure
@@ -44,8 +44,9 @@ class BrakeFigures:
 class LoadTorques:
     """Torques of the load at the gear in Nm, none negative; every figure broadcasts.
 
-    `pulling_Nm` T_d is the largest that may drive the load against the brake, at rest too, `driving_Nm` T_v ≤ T_d the
-    largest that does along a stop, and `opposing_Nm` T_o ≥ T_d the largest that the gear may bear before the stop.
+    `pulling_Nm` T_d is the largest torque that may drive the load against the brake, at rest too, `driving_Nm` T_v ≤
+    T_d the largest one during a stop, and `opposing_Nm` T_o ≥ T_d the largest torque that the gear may bear before the
+    stop.
     """
 
     pulling_Nm: Figure = 0.0
@@ -67,15 +68,15 @@ class Play:
 
 
 def is_stopped(*, brake: BrakeFigures, load: LoadTorques) -> NDArray[np.bool_]:
-    """True where the brake decelerates the load, i T_B > T_v, whatever the inertias are."""
+    """True where the brake decelerates the load, i T_B > T_v, for any inertias."""
     stopped: NDArray[np.bool_] = brake.at_output_Nm > np.multiply(load.driving_Nm, 1 + ROUNDING)
     return stopped
 
 
 def is_held(*, brake: BrakeFigures, load: LoadTorques) -> NDArray[np.bool_]:
     """True where the brake holds the load at rest, i T_B > T_d."""
-    held: NDArray[np.bool_] = brake.at_output_Nm > np.multiply(load.pulling_Nm, 1 + ROUNDING)
-    return held
+    holds: NDArray[np.bool_] = brake.at_output_Nm > np.multiply(load.pulling_Nm, 1 + ROUNDING)
+    return holds
 
 
 @equation
@@ -99,11 +100,11 @@ def flank_share(*, brake: BrakeFigures) -> FloatArray:
 
 @equation
 def stop_torque(*, brake: BrakeFigures, load: LoadTorques, gear: Play, dynamic_factor: Figure) -> FloatArray:
-    """Torque T_k = T_r + √(T_r² + 2 T_r (T_o + K3 γ) + B T_o²) in Nm, which the gear does not exceed in a stop.
+    """Torque T_k = T_r + √(T_r² + 2 T_r (T_o + K3 γ) + B T_o²) in Nm, the gear's upper bound in a stop.
 
-    The load lets go of one flank under T_o, crosses the backlash under the brake's whole torque and swings about T_r on
-    the other; how fast the brake closes doesn't lower the bound. With a dynamic factor f, the user's own,
-    T_k = f T_r + (f - 1) T_o; NaN for none.
+    The load leaves one flank under T_o, crosses the backlash under the brake's whole torque and swings about T_r on the
+    other flank; the rise time of the brake doesn't lower the bound. With the user's own dynamic factor f T_k = f T_r +
+    (f - 1) T_o; f is NaN without one.
     """
     T_o, f = np.asarray(load.opposing_Nm), np.asarray(dynamic_factor)
     T_r = settled_torque(brake=brake, load=load)
@@ -119,11 +120,11 @@ def stop_torque(*, brake: BrakeFigures, load: LoadTorques, gear: Play, dynamic_f
 def largest_brake_torque(
     *, brake: BrakeFigures, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
 ) -> FloatArray:
-    """Largest torque T_B in Nm, the brake's own not counted, at which T_k stays within a limit L.
+    """Largest torque T_B in Nm at which T_k stays within a limit L; the brake's own torque is ignored.
 
-    `stop_torque` solved for T_B: T_r = (L² - B T_o²) / (2 (L + T_o + K3 γ)), or (L - (f - 1) T_o) / f with a factor,
-    i T_B = (T_r (1 + η λ) - T_d) / λ; without inertias η T_r. 0 where none keeps to the limit and stops the load; NaN
-    where L is.
+    `stop_torque` solved for T_B: T_r = (L² - B T_o²) / (2 (L + T_o + K3 γ)), or (L - (f - 1) T_o) / f with a factor, i
+    T_B = (T_r (1 + η λ) - T_d) / λ; without inertias η T_r. 0 if no torque both keeps to the limit and stops the load;
+    NaN if L is NaN.
     """
     J, m, eta = brake.load_inertia_kgm2, brake.motor_at_output_kgm2, np.asarray(brake.efficiency)
     L, T_o, f = np.asarray(permissible_torque_Nm), np.asarray(load.opposing_Nm), np.asarray(dynamic_factor)
@@ -139,11 +140,11 @@ def largest_brake_torque(
 def largest_load_inertia(
     *, brake: BrakeFigures, load: LoadTorques, gear: Play, dynamic_factor: Figure, permissible_torque_Nm: Figure
 ) -> FloatArray:
-    """Largest inertia J of the load in kg m², the brake's own not counted, at which T_k stays within a limit L.
+    """Largest inertia J of the load in kg m² at which T_k stays within a limit L; the load's own inertia is ignored.
 
     `stop_torque` is L where λ (2 i T_B (L + T_o + K3 γ) + T_o²/η - η L²) = L² - T_o² - 2 T_d (L + T_o + K3 γ); with a
-    factor where λ (i T_B - η T_r) = T_r - T_d. Infinite where no inertia reaches the limit, 0 where every one exceeds
-    it, NaN where the brake does not hold the load (T_k then falls with J) and without the motor's inertia.
+    factor where λ (i T_B - η T_r) = T_r - T_d. Infinite if no inertia reaches the limit, 0 if every one exceeds it, NaN
+    if the brake does not hold the load (T_k then falls with J) and without the motor's inertia.
     """
     m, eta, at_output = brake.motor_at_output_kgm2, np.asarray(brake.efficiency), brake.at_output_Nm
     L, T_d, T_o = (np.asarray(value) for value in (permissible_torque_Nm, load.pulling_Nm, load.opposing_Nm))
@@ -161,9 +162,9 @@ def largest_load_inertia(
 
 @dataclass(frozen=True, eq=False)
 class Stop:
-    """Upper bounds of a stop: time in s and angle in rad from the command to rest, energy in J that the brake takes.
+    """Upper bounds of a stop: time in s and angle in rad from the command to rest, energy in J that the brake absorbs.
 
-    NaN where an inertia is not known; infinite where the brake does not stop the load.
+    NaN if an inertia is unknown; infinite if the brake does not stop the load.
     """
 
     time_s: FloatArray
@@ -209,10 +210,10 @@ def course_of_stop(
 def impact_speed(
     *, momentary_peak_torque_Nm: Figure, torsional_stiffness_Nm_per_rad: Figure, inertia_kgm2: Figure
 ) -> FloatArray:
-    """Speed T_M / √(K3 J) of the output in rpm from which an inertia that is caught by the gear alone reaches T_M.
+    """Speed T_M / √(K3 J) of the output in rpm from which an inertia that the gear alone catches reaches T_M.
 
-    The inertia is the motor's at the output, i² J_m, where the load meets an end stop, and the load's where the motor
-    locks. Energy of the inertia into the spring: J ω² / 2 = T² / (2 K3).
+    The inertia is the motor's at the output, i² J_m, if the load meets an end stop, and the load's if the motor locks.
+    Energy of the inertia into the spring: J ω² / 2 = T² / (2 K3).
     """
     omega = np.asarray(momentary_peak_torque_Nm) / np.sqrt(np.multiply(torsional_stiffness_Nm_per_rad, inertia_kgm2))
     return omega * 30 / np.pi

@@ -1,1 +1,1 @@
-"""The package as Python calls it: `hpn.select`, `hpn.size`, `hpn.catalogue` and `hpn.report`, loaded on first use."""
+"""Functions for Python: `hpn.select`, `hpn.size`, `hpn.catalogue` and `hpn.report`, loaded on first use."""

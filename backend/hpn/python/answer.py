@@ -1,4 +1,4 @@
-"""Selection of a gear: `hpn.select` and the answer that it gives."""
+"""Selection of a gear: `hpn.select` and its answer."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,16 +13,16 @@ from hpn.engine.selection import DutyFigures, Selection, encode
 from hpn.engine.selection import select as selection_of
 from hpn.links.writer import to_link
 from hpn.python import html
-from hpn.python.faults import told
+from hpn.python.faults import with_application_errors
 from hpn.python.gears import Gears
 
 SHOWN = 10
-"""Candidates that a notebook shows."""
+"""Most candidates that a notebook shows."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Answer:
-    """The answer to an application: the selection, as `POST /api/v1/select` gives it, with what was asked.
+    """Answer to an application: the selection as from `POST /api/v1/select`, and the application.
 
     Iterable and indexed by candidates, the best first.
     """
@@ -38,7 +38,7 @@ class Answer:
 
     @property
     def candidates(self) -> Sequence[Candidate]:
-        """Every gear considered, the best first, each with its checks."""
+        """All gears considered, the best first, each with its checks."""
         return self.selection.candidates
 
     @property
@@ -53,28 +53,28 @@ class Answer:
 
     @property
     def link(self) -> str:
-        """Path and query of the page that shows the application."""
+        """Path and query of the application's page."""
         return self.selection.link
 
     def candidate(self, designation: str) -> Candidate:
-        """The candidate of a designation in any spelling; KeyError where it was not considered."""
-        found = self.selection.candidate(self.gears[designation].designation)
-        if found is None:
+        """Candidate with a designation in any spelling; raises KeyError where it was not considered."""
+        candidate = self.selection.candidate(self.gears[designation].designation)
+        if candidate is None:
             raise KeyError(f"{designation} is none of the gears that were asked for")
-        return found
+        return candidate
 
     def columns(self) -> dict[str, list[Any]]:
-        """Figures of the candidates by column, as every library of data frames takes them."""
+        """Figures of the candidates by column, in the form that every library of data frames takes."""
         rows = self.to_dict()["candidates"]
         names = [name for name, value in rows[0].items() if not isinstance(value, list | dict)]
         return {name: [row[name] for row in rows] for name in names}
 
     def to_json(self) -> str:
-        """The reply of `POST /api/v1/select`, to the byte."""
+        """Reply of `POST /api/v1/select`, byte for byte."""
         return encode(self.selection).decode()
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
+        """Reply as plain data."""
         plain: dict[str, Any] = msgspec.json.decode(encode(self.selection))
         return plain
 
@@ -113,16 +113,16 @@ def _percent(utilisation: float | None) -> str | None:
 
 
 def select(application: Application | Mapping[str, Any], *, catalogue: Gears | None = None, samples: int = 0) -> Answer:
-    """The answer to an application.
+    """Answer to an application.
 
         answer = hpn.select({"duty_cycle": {"phases": [{"torque_Nm": 40, "speed_rpm": 250, "duration_s": 0.3}]}})
         answer.selected, answer.candidates[0].utilisation
 
-    `application` has the fields of `POST /api/v1/select`. `catalogue` is what `hpn.catalogue(…)` gives, by default
-    that of the settings; `samples` are points of the tolerances that are tried for the share of those that fail.
-    Raises `hpn.ApplicationError` for what can't be answered.
+    `application` has the fields of `POST /api/v1/select`. `catalogue` comes from `hpn.catalogue(…)`, by default the one
+    of the settings; `samples` is the number of points tried inside the tolerances for the share of failures.
+    Raises `hpn.ApplicationError` for an application without an answer.
     """
     known = Gears.of() if catalogue is None else catalogue
-    with told():
-        asked = application if isinstance(application, Application) else Application.model_validate(application)
-        return Answer(asked, selection_of(asked, known.catalogue, to_link, samples), known)
+    with with_application_errors():
+        question = application if isinstance(application, Application) else Application.model_validate(application)
+        return Answer(question, selection_of(question, known.catalogue, to_link, samples), known)

@@ -1,19 +1,19 @@
-"""Inputs that can't be used, as an error that Python expects."""
+"""Errors of input in the form that Python expects."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from pydantic import ValidationError
 
-from hpn.application.faults import InputError, faults_of, pointer
-from hpn.words.wording import MendableError
+from hpn.application.faults import InputError, faults_of, lines_of, pointer
+from hpn.words.wording import MendableError, shortened
 
 MOST_LINES = 20
-"""Faults that the text lists; `faults` has all of them."""
+"""Most faults in the text; `faults` has all of them."""
 
 
 class ApplicationError(ValueError):
-    """An application or table that can't be used; the text names each fault and says what would be right.
+    """Error of an unusable application or table; the text names each fault with the accepted form.
 
     `faults` are (JSON pointer, sentence, code), as in the problems of REST.
     """
@@ -24,14 +24,12 @@ class ApplicationError(ValueError):
 
 
 @contextmanager
-def told() -> Iterator[None]:
+def with_application_errors() -> Iterator[None]:
     """Raise ApplicationError in place of the errors of models, selection and tables."""
     try:
         yield
     except (ValidationError, InputError) as error:
         faults = tuple((pointer(location) or "/", text, code) for location, text, code in faults_of(error))
-        lines = [f"{place}: {text}" for place, text, _ in faults[:MOST_LINES]]
-        more = [f"and {len(faults) - MOST_LINES} more"] if len(faults) > MOST_LINES else []
-        raise ApplicationError("\n".join([*lines, *more]), faults) from None
+        raise ApplicationError("\n".join(shortened(lines_of(error), MOST_LINES)), faults) from None
     except MendableError as error:
         raise ApplicationError(str(error)) from None

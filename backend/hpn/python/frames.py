@@ -1,4 +1,4 @@
-"""Tables of axes that are in memory: `hpn.size`, for pandas, polars and Arrow."""
+"""Tables of axes in memory: `hpn.size`, for pandas, polars and Arrow."""
 
 import os
 import sys
@@ -6,18 +6,18 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, overload
 
 from hpn.installed import require
-from hpn.python.faults import ApplicationError, told
+from hpn.python.faults import ApplicationError, with_application_errors
 from hpn.python.gears import Gears
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 Give = Literal["answers", "candidates", "rejected"]
-"""A row for each axis, for each of its candidates, or for each fault."""
+"""Kind of table: a row for each axis, for each of its candidates, or for each fault."""
 
 
 class ArrowStream(Protocol):
-    """A table of any library that hands its columns over by the Arrow PyCapsule interface."""
+    """Table of any library with the Arrow PyCapsule interface."""
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
 
@@ -60,10 +60,10 @@ def size(
 
         answers = hpn.size(frame)   # as hpn fleet: columns axis, selected, utilisation, … and error
 
-    `frame` is in the list or the long form of `hpn fleet`. The answer is of the same library; of another one that has
+    `frame` is in the list or the long form of `hpn fleet`. The answer is of the same library; for other libraries with
     the Arrow PyCapsule interface it is a table of pyarrow. `give` asks for every candidate, or for the faults of axes
-    that have no answer; `ignore` names columns to be left out. `workers` are threads, by default one for each core.
-    Raises `hpn.ApplicationError` for columns that can't be used, ExtraMissingError without the extra `fleet`.
+    without an answer; `ignore` names columns to leave out. `workers` is the number of threads, by default one per core.
+    Raises `hpn.ApplicationError` for unusable columns, ExtraMissingError without the extra `fleet`.
     """
     require("fleet")
     import pyarrow as pa
@@ -79,12 +79,12 @@ def size(
     except (pa.ArrowException, TypeError, ValueError) as error:
         raise ApplicationError(f"a {type(frame).__name__} can’t be read as a table: {error}") from None
     engine = threads(workers or len(os.sched_getaffinity(0)))
-    with told():
+    with with_application_errors():
         return _like(frame, size_table(axes_in_memory(table, ignore), known.catalogue, give, engine))
 
 
 def _like(frame: Any, answers: "pa.Table") -> Any:
-    """Answers as a table of the library that a frame is of."""
+    """Answers as a table of the frame's library."""
     if isinstance(frame, Mapping):
         return answers.to_pydict()
     library = type(frame).__module__.partition(".")[0]

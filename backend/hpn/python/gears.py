@@ -1,4 +1,4 @@
-"""The catalogue: `hpn.catalogue` and the gears that it gives."""
+"""Catalogue: `hpn.catalogue` and its gears."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import msgspec
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.catalogue.gear import Gear
 from hpn.python import html
-from hpn.python.faults import told
+from hpn.python.faults import with_application_errors
 from hpn.web.settings import Settings
 
 SHOWN = {
@@ -22,12 +22,12 @@ SHOWN = {
     "maximum_input_speed_rpm": "n_in(max) in rpm",
     "weight_kg": "m in kg",
 }
-"""Figures that a notebook shows, and their heads."""
+"""Figures that a notebook shows, and their headings."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gears:
-    """Every gear of a catalogue with its published figures; None is not published.
+    """Gears of a catalogue with their published figures; an unpublished figure is None.
 
     Indexed by designation, in any spelling.
     """
@@ -52,20 +52,20 @@ class Gears:
         return len(self.catalogue.gears)
 
     def columns(self) -> dict[str, list[Any]]:
-        """Published figures by column, as every library of data frames takes them."""
+        """Published figures by column, in the form that every library of data frames takes."""
         rows = [msgspec.to_builtins(gear) for gear in self]
         names = [name for name in rows[0] if not any(isinstance(row[name], list | tuple | dict) for row in rows)]
         return {name: [row[name] for row in rows] for name in names}
 
     @classmethod
     def of(cls, supplement: str | Path | None = None) -> "Gears":
-        """Every gear with its published figures, `supplement` laid over them: a folder of CSV files.
+        """All gears with their published figures, with those of `supplement` laid over them: a folder of CSV files.
 
-        Without it that of the settings holds (`HPN_CATALOGUE_SUPPLEMENT`), as for `hpn select`, and is read once.
-        Raises `hpn.ApplicationError` for files that can't be used.
+        Without `supplement` the one of the settings holds (`HPN_CATALOGUE_SUPPLEMENT`), as for `hpn select`, and is
+        read once. Raises `hpn.ApplicationError` for unusable files.
         """
         settings = Settings()
-        with told():
+        with with_application_errors():
             if supplement is None:
                 return _of_settings(
                     settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds

@@ -3,25 +3,20 @@
 from datetime import UTC, datetime
 from typing import Literal
 
-from hpn.files.export import DIGITS, Export, ExportTitle, made_by
+from hpn.files import formats
+from hpn.files.export import DIGITS, Export, ExportTitle
 from hpn.installed import require
 from hpn.python.answer import Answer
 from hpn.python.faults import ApplicationError
 from hpn.words.reader import Reader
 
-FileFormat = Literal["pdf", "xlsx", "aasx"]
-
-MAKERS: dict[str, tuple[str, tuple[str, ...]]] = {
-    "pdf": ("hpn.files.report.pdf:pdf", ("serve", "report")),
-    "xlsx": ("hpn.files.workbook.workbook:workbook", ("serve",)),
-    "aasx": ("hpn.files.aas.submodel:package", ("serve", "aas")),
-}
-"""Functions that make the formats, and the extras that they need."""
+Suffix = Literal["pdf", "xlsx", "aasx"]
+FORMATS = {"pdf": formats.PDF, "xlsx": formats.WORKBOOK, "aasx": formats.PACKAGE}
 
 
 def report(
     answer: Answer,
-    format: FileFormat = "pdf",
+    format: Suffix = "pdf",
     *,
     title: str = "",
     reference: str = "",
@@ -31,17 +26,16 @@ def report(
     language: Literal["en", "de"] = "en",
     service: str = "",
 ) -> bytes:
-    """The report on an answer as PDF, the workbook of its numbers (xlsx), or its Asset Administration Shell (aasx).
+    """Report on an answer as PDF, workbook of its numbers (xlsx), or Asset Administration Shell (aasx).
 
         Path("report.pdf").write_bytes(hpn.report(hpn.select(application), title="Axis 7"))
 
-    `gear` is the candidate to report on, by default the selected one; `service` is the address of a service that the
-    printed link leads to. Raises ExtraMissingError without the extras `serve` and `report` or `aas`.
+    `gear` is the candidate to report on, by default the selected one; `service` is the address of the service for the
+    printed link. Raises ExtraMissingError without the extras `serve` and `report` or `aas`.
     """
-    if format not in MAKERS:
+    if format not in FORMATS:
         raise ApplicationError(f"format: must be pdf, xlsx or aasx, not {format!r}")
-    maker, extras = MAKERS[format]
-    for extra in extras:
+    for extra in FORMATS[format].extras:
         require(extra)
     export = Export(
         application=answer.application,
@@ -52,4 +46,4 @@ def report(
         catalogue=answer.gears.catalogue,
         chosen=answer.candidate(gear).designation if gear else "",
     )
-    return made_by(maker, export, *([] if format == "aasx" else [Reader(language, digits=DIGITS)]))
+    return FORMATS[format].made(export, Reader(language, digits=DIGITS))

@@ -18,7 +18,18 @@ from hpn.store.errors import (
 from hpn.store.keys import Once
 from hpn.store.lists import ID, LineFilter, Sorting
 from hpn.store.motor_lists import MOST_LISTS, MotorListDraft, MotorListLine, SavedMotorList
-from hpn.store.records import AxisDraft, DocumentLine, Machine, MachineDraft, RevisionDraft, RevisionLine, SavedAxis
+from hpn.store.records import (
+    AxesOfGear,
+    AxisDraft,
+    DocumentLine,
+    Machine,
+    MachineDraft,
+    MachineLine,
+    MachineList,
+    RevisionDraft,
+    RevisionLine,
+    SavedAxis,
+)
 from hpn.store.saved import Draft, SavedSelection, SelectionLine
 from hpn.store.store import Store
 from hpn.store.todays import AxisVerdict, Stale, Versions
@@ -26,6 +37,7 @@ from hpn.store.todays import AxisVerdict, Stale, Versions
 __all__ = [
     "ID",
     "MOST_LISTS",
+    "AxesOfGear",
     "AxisDraft",
     "AxisVerdict",
     "Change",
@@ -40,6 +52,8 @@ __all__ = [
     "ListsSpentError",
     "Machine",
     "MachineDraft",
+    "MachineLine",
+    "MachineList",
     "MotorListDraft",
     "MotorListLine",
     "NameTakenError",

@@ -1,4 +1,4 @@
-"""From an address to an engine: SQLite in write-ahead mode, or PostgreSQL."""
+"""Engine for the address of a database: SQLite in write-ahead mode, or PostgreSQL."""
 
 import os
 import sqlite3
@@ -15,14 +15,14 @@ from hpn.installed import require
 from hpn.store.errors import StoreError
 
 WRITES = {"writes": True}
-"""Execution options of an engine whose transactions write: on SQLite they take the write lock when they begin."""
+"""Execution options of transactions that write: on SQLite they take the write lock when they begin."""
 
 
 def make_engine(address: str, *, seconds: float, password: str | None = None) -> AsyncEngine:
-    """Engine for `sqlite:///file` or `postgresql://user:password@host/database`; connects when it is first used.
+    """Engine for `sqlite:///file` or `postgresql://user:password@host/database`; it connects at its first use.
 
-    `seconds` is the longest wait for a connection or for another writer's lock. `password` is that of the database's
-    user, of any characters; in the address some of them have to be written as %40 and the like.
+    `seconds` is the longest wait for a connection or for another writer's lock. `password` is the password of the
+    database's user, of any characters; in the address some characters need an escape such as %40.
     """
     try:
         url = make_url(address)
@@ -59,7 +59,7 @@ def _sqlite(url: URL, seconds: float) -> AsyncEngine:
     _create(Path(url.database).absolute())
     engine = create_async_engine(
         url.set(drivername="sqlite+aiosqlite"),
-        hide_parameters=True,  # errors are logged, and what was asked is not
+        hide_parameters=True,  # errors are logged, and parameters must not be
         pool_timeout=seconds,
         connect_args={"timeout": seconds},
     )
@@ -69,12 +69,13 @@ def _sqlite(url: URL, seconds: float) -> AsyncEngine:
 
 
 def _create(file: Path) -> None:
-    """Make an empty database in write-ahead mode, whole under its name, where there is none.
+    """Make an empty database in write-ahead mode where there is none; the file appears under its name when it is
+    complete.
 
-    Of connections that change the mode at once, SQLite fails all but one without waiting.
+    Where several connections change the mode at once, SQLite fails all but one without waiting.
     """
     file.parent.mkdir(parents=True, exist_ok=True)
-    if file.exists() or not os.access(file.parent, os.W_OK):  # where it can't be written, connecting says so
+    if file.exists() or not os.access(file.parent, os.W_OK):  # in a read-only folder the connection raises the error
         return
     with TemporaryDirectory(dir=file.parent, prefix=f".{file.name}-") as folder:
         new = Path(folder, file.name)
@@ -86,7 +87,7 @@ def _create(file: Path) -> None:
 
 
 def _prepare(connection: Any, record: object) -> None:
-    """Readers never wait for the writer, and a commit is on disk before it returns."""
+    """Set up a connection: readers never wait for the writer, and a commit is on disk before it returns."""
     connection.isolation_level = None  # `_begin` begins transactions, not the driver
     cursor = connection.cursor()
     for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
@@ -95,6 +96,6 @@ def _prepare(connection: Any, record: object) -> None:
 
 
 def _begin(connection: Connection) -> None:
-    """Take the write lock at once where the transaction will write: to take it later can fail without waiting."""
+    """Begin a transaction; one that writes takes the write lock now: taking it later can fail without waiting."""
     writes = connection.get_execution_options().get("writes", False)
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")

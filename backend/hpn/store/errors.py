@@ -13,50 +13,51 @@ class StoreError(MendableError):
 
 
 class StoreUnavailableError(StoreError):
-    """The database can't be reached, is too slow, or is refused for now; the same call may work later."""
+    """The database can't be reached, is too slow, or refuses for now; the same call may work later."""
 
 
 class StoreFullError(StoreUnavailableError):
-    """The disk of the database is full; SQLite writes a deletion into its log, too, before it frees anything."""
+    """The disk of the database is full; SQLite needs room for a deletion, too: it enters the log before room is
+    freed."""
 
     def __init__(self) -> None:
         super().__init__(FULL)
 
 
 class NewerDatabaseError(StoreError):
-    """A newer version of this program has changed the database in a way that this one does not know."""
+    """A newer version of this program has changed the database; this version does not know the change."""
 
 
 class ShareSpentError(StoreError):
-    """A caller has as many unsaved machines as one may have."""
+    """A caller has reached the limit of unsaved machines."""
 
 
 class NoRoomError(StoreError):
-    """The unsaved machines take as much room as all of them may."""
+    """All unsaved machines together have reached the limit of room."""
 
 
 class KeySpentError(StoreError):
-    """The selection saved under an idempotency key has been deleted since."""
+    """The selection saved under this idempotency key has been deleted since."""
 
 
 class KeyReusedError(StoreError):
-    """An idempotency key that was used before comes with other content."""
+    """An idempotency key comes a second time, with other content."""
 
 
 class LabelTakenError(StoreError):
-    """A document has a revision with this label already."""
+    """The document already has a revision with this label."""
 
 
 class NameTakenError(StoreError):
-    """Its owner has a list of motors with this name already."""
+    """The owner already has a list of motors with this name."""
 
 
 class ListsSpentError(StoreError):
-    """Its owner has as many lists of motors as one may have."""
+    """The owner has reached the limit of lists of motors."""
 
 
 class ExcessError(StoreError):
-    """A document would have more of something than one may have: `axes`, `phases` or `revisions`."""
+    """A document would exceed a limit: of `axes`, `phases` or `revisions`."""
 
     def __init__(self, what: str, most: int) -> None:
         self.what, self.most = what, most

@@ -1,4 +1,4 @@
-"""Idempotency keys: the same key with the same content makes a thing once, also after its deletion."""
+"""Idempotency keys: the same key with the same content makes one document, even after its deletion."""
 
 import hashlib
 from datetime import datetime
@@ -13,13 +13,13 @@ from hpn.store.tables import idempotency_keys
 
 
 class Once(NamedTuple):
-    """Idempotency key, and the fingerprint of what it came with."""
+    """Idempotency key with the fingerprint of its request."""
 
     key: str
     digest: str
 
 
-class Made(NamedTuple):
+class KeyResult(NamedTuple):
     """Result of a key: a document, or a part of one."""
 
     document: str
@@ -27,50 +27,50 @@ class Made(NamedTuple):
 
 
 async def insert_new(connection: AsyncConnection, table: Table, row: dict[str, Any]) -> bool:
-    """Insert a row; False where one with the same key is there. SQLAlchemy has this for each database apart."""
+    """Insert a row; False where a row with the same primary key exists. SQLAlchemy has this per database only."""
     dialect = sqlite if connection.dialect.name == "sqlite" else postgresql
     new = dialect.insert(table).values(row).on_conflict_do_nothing().returning(*table.primary_key)
     return (await connection.execute(new)).first() is not None
 
 
-async def take(connection: AsyncConnection, key: str, digest: str, document: str) -> Made | None:
-    """Earlier result of the key; None where it is this transaction's, which now makes it for a document.
+async def take(connection: AsyncConnection, key: str, digest: str, document: str) -> KeyResult | None:
+    """Earlier result of the key; None where the key is new: this transaction then makes the document.
 
-    The insertion waits for any other transaction that has the key in hand. Raises KeyReusedError and KeySpentError; the
-    caller then rolls the transaction back.
+    The insertion waits for any other transaction that uses the key. Raises KeyReusedError and KeySpentError; the caller
+    then rolls the transaction back.
     """
     row = {"key_sha256": hash_of(key), "digest": digest, "document": document}
     is_new = await insert_new(connection, idempotency_keys, row)
-    made = await made_by(connection, key, digest)
-    return None if is_new else made
+    earlier = await made_by(connection, key, digest)
+    return None if is_new else earlier
 
 
-async def made_by(connection: AsyncConnection, key: str, digest: str) -> Made | None:
+async def made_by(connection: AsyncConnection, key: str, digest: str) -> KeyResult | None:
     """Result of a key; None for a new one. Raises as `take`."""
     c = idempotency_keys.c
     query = select(c.digest, c.document, c.part, c.deleted).where(c.key_sha256 == hash_of(key))
-    held = (await connection.execute(query)).one_or_none()
-    if held is None:
+    row = (await connection.execute(query)).one_or_none()
+    if row is None:
         return None
-    if held.deleted is not None:
+    if row.deleted is not None:
         raise KeySpentError(
             "the selection saved under this idempotency key has been deleted; take a new key to save it anew"
         )
-    if held.digest != digest:
+    if row.digest != digest:
         raise KeyReusedError(
             "this idempotency key was used before, with other content; take a new key for a new selection"
         )
-    return Made(held.document, held.part)
+    return KeyResult(row.document, row.part)
 
 
 async def keep_part(connection: AsyncConnection, key: str, part: str) -> None:
-    """Remember what a key has made of its document."""
-    made = update(idempotency_keys).where(idempotency_keys.c.key_sha256 == hash_of(key)).values(part=part)
-    await connection.execute(made)
+    """Remember the part of its document that a key has made."""
+    remembered = update(idempotency_keys).where(idempotency_keys.c.key_sha256 == hash_of(key)).values(part=part)
+    await connection.execute(remembered)
 
 
 async def spend(connection: AsyncConnection, document: str, moment: datetime) -> None:
-    """Remember of the keys of a document that goes that they are spent, and nothing else."""
+    """Mark the keys of a deleted document as spent, and erase all else about them."""
     c = idempotency_keys.c
     values = {"digest": None, "document": None, "part": None, "deleted": moment}
     await connection.execute(update(idempotency_keys).where(c.document == document).values(values))

@@ -1,24 +1,25 @@
-"""Lists of saved documents: filtered, sorted, in parts that follow one another by a cursor."""
+"""Lists of saved documents: filtered, sorted, and read part by part with a cursor."""
 
 import base64
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from datetime import UTC, datetime
 from math import isfinite
 from typing import Any, Literal, TypeVar
 
-from sqlalchemy import ColumnElement, Double, cast, exists, func, literal, select, tuple_
+from sqlalchemy import ColumnElement, Double, cast, exists, func, literal, or_, select, tuple_
 from sqlalchemy.ext.asyncio import AsyncConnection
 
-from hpn.store.records import DocumentKind, DocumentLine
-from hpn.store.saved import SelectionLine, search_text
+from hpn.store.machines import AXIS, axis_in
+from hpn.store.records import DocumentKind, DocumentLine, MachineLine, MachineList
+from hpn.store.saved import SelectionLine
 from hpn.store.tables import UtcTime, axes, documents
 
-T = TypeVar("T", DocumentLine, SelectionLine)
+T = TypeVar("T", DocumentLine, MachineLine, SelectionLine)
 
 ID = re.compile(r"[A-Za-z0-9_-]{22}")
-"""An id: 128 random bits."""
+"""Id: 128 random bits."""
 
 Sorting = Literal[
     "saved",
@@ -35,15 +36,17 @@ Sorting = Literal[
     "-utilisation",
     "axes",
     "-axes",
+    "weight",
+    "-weight",
 ]
-"""Orders of a list; with a minus the last, the newest or the largest comes first."""
+"""Orders of a list; a minus puts the last, the newest or the largest first."""
 
 NEWEST: Sorting = "-saved"
 
 
 @dataclass(frozen=True, slots=True)
 class LineFilter:
-    """Which saved documents a list has, None for whichever, and their order."""
+    """Filters of a list of saved documents, None for no filter, and its order."""
 
     kind: DocumentKind | None = "machine"
     search: str | None = None
@@ -53,20 +56,21 @@ class LineFilter:
     updated_since: datetime | None = None
     created_since: datetime | None = None
     todo: bool = False
-    """Only those with an axis that has no suitable gear."""
+    """True for documents with an axis without a suitable gear, or with changes that are in no revision."""
+    owner: str | None = None
     changed_by: str | None = None
-    """Only those with another verdict by these versions of engine and catalogue."""
+    """Versions of engine and catalogue: only documents that get another verdict by them."""
     sort: Sorting = NEWEST
 
     def conditions(self) -> Iterator[ColumnElement[bool]]:
-        """Conditions for them."""
+        """Conditions for the rows of `documents` that pass the filter."""
         c = documents.c
         yield c.saved.is_not(None)
-        for name in ("kind", "reference", "author"):
+        for name in ("kind", "reference", "author", "owner"):
             if (value := getattr(self, name)) is not None:
                 yield c[name] == value
-        for word in search_text(self.search).split():
-            yield c.search_text.contains(word, autoescape=True)
+        for word in (self.search or "").split():
+            yield or_(c.search_text.contains(word.casefold(), autoescape=True), _has_axis(word))
         if self.selected is not None:
             own = (axes.c.document == c.id, axes.c.removed.is_(None), axes.c.selected == self.selected)
             yield exists().where(*own)
@@ -75,7 +79,7 @@ class LineFilter:
         if self.created_since is not None:
             yield c.created >= self.created_since
         if self.todo:
-            yield c.suitable < c.axes
+            yield or_(c.suitable < c.axes, c.changes > 0)
         if self.changed_by is not None:
             yield c.today_of == self.changed_by
             yield c.today_changed > 0
@@ -84,7 +88,7 @@ class LineFilter:
 async def read_lines(
     connection: AsyncConnection, record: type[T], wanted: LineFilter, cursor: str | None, limit: int
 ) -> tuple[list[T], str | None]:
-    """Saved documents as records of a kind, and a cursor to those that follow; ValueError for one that isn't."""
+    """Saved documents as records of a type, and a cursor to the next part; ValueError for an invalid cursor."""
     name, is_falling = wanted.sort.lstrip("-"), wanted.sort.startswith("-")
     key, c = _key(name), documents.c
     columns = [c[field.name] for field in fields(record)]
@@ -98,12 +102,39 @@ async def read_lines(
     return lines, _cursor(rows[limit - 1][-1], lines[-1].id) if len(rows) > limit else None
 
 
-TIMES, NUMBERS = ("saved", "created", "updated"), ("utilisation", "axes")
+async def read_machine_lines(
+    connection: AsyncConnection,
+    wanted: LineFilter,
+    filters: Mapping[str, LineFilter],
+    cursor: str | None,
+    limit: int,
+) -> MachineList:
+    """Machines as their page lists them, and the number of machines of each filter; ValueError as `read_lines`."""
+    lines, following = await read_lines(connection, MachineLine, wanted, cursor, limit)
+    c = documents.c
+    governing = select(c.id, *AXIS).join(axes, (axes.c.document == c.id) & (axes.c.number == c.governing_axis))
+    rows = await connection.execute(governing.where(c.id.in_([line.id for line in lines])))
+    by_id = {row[0]: axis_in(row[1:]) for row in rows}
+    counted = [select(func.count()).select_from(documents).where(*each.conditions()) for each in filters.values()]
+    counts = [(await connection.execute(query)).scalar_one() for query in counted]
+    return MachineList(lines, by_id, following, dict(zip(filters, counts, strict=True)))
+
+
+def _has_axis(word: str) -> ColumnElement[bool]:
+    """Condition for a document with an axis whose name, gear or ordering code contains a word, in any case (as far as
+    the database knows cases)."""
+    escaped = word.translate({ord(sign): f"/{sign}" for sign in "/%_"})
+    pattern, c = func.lower(f"%{escaped}%"), axes.c
+    named = [func.lower(each).like(pattern, escape="/") for each in (c.name, c.designation, c.ordering_code)]
+    return exists().where(c.document == documents.c.id, c.removed.is_(None), or_(*named))
+
+
+TIMES, NUMBERS = ("saved", "created", "updated"), ("utilisation", "axes", "weight")
 
 
 def _key(name: str) -> ColumnElement[Any]:
-    """Value by which a document is sorted; one without a title comes before all with one."""
-    column: ColumnElement[Any] = documents.c[name]
+    """Key of an order of documents; a missing title or figure sorts before all others."""
+    column: ColumnElement[Any] = documents.c["weight_kg" if name == "weight" else name]
     if name in TIMES:
         return column
     return func.coalesce(cast(column, Double), -1.0) if name in NUMBERS else func.lower(func.coalesce(column, ""))
@@ -115,7 +146,7 @@ def _cursor(value: Any, id: str) -> str:
 
 
 def _position(cursor: str, name: str) -> tuple[ColumnElement[Any], ColumnElement[str]]:
-    """Value and id that a cursor stands for in a list that is sorted by a column."""
+    """Value and id in a cursor of a list that is sorted by a column; ValueError for an invalid cursor."""
     try:
         text, _, id = base64.urlsafe_b64decode(cursor.encode()).decode().rpartition(" ")
         if not ID.fullmatch(id) or "\0" in text:

@@ -1,4 +1,4 @@
-"""Lists of motors that people keep under a name; each has the owner's name once."""
+"""Lists of motors saved under a name, unique for each owner."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,12 +15,12 @@ from hpn.store.saved import packed, unpacked
 from hpn.store.tables import motor_lists
 
 MOST_LISTS = 200
-"""Lists of one owner, at most; those without one count together."""
+"""Most lists of one owner; lists without an owner count together."""
 
 
 @dataclass(frozen=True, slots=True)
 class MotorListDraft:
-    """A list to be kept: its name, the number of its motors, and these as JSON."""
+    """List to save: its name, the number of its motors, and the motors as JSON."""
 
     name: str
     motors: int
@@ -29,7 +29,7 @@ class MotorListDraft:
 
 @dataclass(frozen=True, slots=True)
 class MotorListLine:
-    """One line of the lists of motors; `version` counts changes from 1, `owner` is a key's name, blank without one."""
+    """Line of the lists of motors; `version` counts changes from 1, `owner` is a key's name, blank without a key."""
 
     id: str
     owner: str
@@ -42,16 +42,16 @@ class MotorListLine:
 
 @dataclass(frozen=True, slots=True)
 class SavedMotorList(MotorListLine):
-    """A list of motors with its content as JSON."""
+    """List of motors with its content as JSON."""
 
-    content: bytes = field(repr=False)
+    content: bytes = field(repr=False, kw_only=True)
 
 
 _LINE = [motor_lists.c[name] for name in MotorListLine.__dataclass_fields__]
 
 
 async def add_list(connection: AsyncConnection, draft: MotorListDraft, owner: str) -> str:
-    """Id of a new list; raises NameTakenError, and ListsSpentError beyond what an owner may have."""
+    """Id of a new list; raises NameTakenError, and ListsSpentError beyond MOST_LISTS."""
     c = motor_lists.c
     count = (await connection.execute(select(func.count()).where(c.owner == owner))).scalar_one()
     if count >= MOST_LISTS:
@@ -66,7 +66,7 @@ async def add_list(connection: AsyncConnection, draft: MotorListDraft, owner: st
 
 
 async def replace_list(connection: AsyncConnection, id: str, draft: MotorListDraft, version: int | None) -> bool:
-    """Replace a list; False where there is none, or none in the version given. Raises NameTakenError."""
+    """Replace a list; False where there is none, or where its version differs. Raises NameTakenError."""
     c = motor_lists.c
     values = {**_row(draft), "version": c.version + 1, "updated": datetime.now(UTC)}
     replaced = update(motor_lists).where(*_in_version(id, version)).values(values).returning(c.id)
@@ -77,28 +77,23 @@ async def replace_list(connection: AsyncConnection, id: str, draft: MotorListDra
 
 
 async def remove_list(connection: AsyncConnection, id: str, version: int | None) -> bool:
-    """Delete a list; False as `replace_list`. What has been taken from it stays: figures are copied."""
+    """Delete a list; False as `replace_list`. Applications keep the figures of its motors: they are copies."""
     gone = delete(motor_lists).where(*_in_version(id, version)).returning(motor_lists.c.id)
     return (await connection.execute(gone)).one_or_none() is not None
 
 
 async def read_list(connection: AsyncConnection, id: str) -> SavedMotorList | None:
-    """The list with this id, or None."""
+    """List with this id, or None."""
     c = motor_lists.c
     row = (await connection.execute(select(*_LINE, c.content_packed).where(c.id == id))).one_or_none()
-    return None if row is None else SavedMotorList(**_named(row), content=unpacked(row.content_packed))
+    return None if row is None else SavedMotorList(*row[:-1], content=unpacked(row.content_packed))
 
 
 async def read_lists(connection: AsyncConnection) -> Sequence[MotorListLine]:
-    """All lists by their names."""
+    """All lists, in the order of their names."""
     c = motor_lists.c
     rows = await connection.execute(select(*_LINE).order_by(c.name_key, c.owner))
-    return [MotorListLine(**_named(row)) for row in rows]
-
-
-def _named(row: Any) -> dict[str, Any]:
-    """Columns of a line by their names."""
-    return {name: getattr(row, name) for name in MotorListLine.__dataclass_fields__}
+    return [MotorListLine(*row) for row in rows]
 
 
 def _row(draft: MotorListDraft) -> dict[str, Any]:
@@ -111,6 +106,6 @@ def _row(draft: MotorListDraft) -> dict[str, Any]:
 
 
 def _in_version(id: str, version: int | None) -> list[ColumnElement[bool]]:
-    """Condition for a list in the version that somebody has seen; None: any."""
+    """Condition for a list in the version that the caller has seen; None: any version."""
     c = motor_lists.c
     return [c.id == id, *([] if version is None else [c.version == version])]

@@ -1,4 +1,4 @@
-"""Records of documents, as the store keeps them: what is handed to it, and what it gives back."""
+"""Records of documents: drafts that the store receives, and records that it returns."""
 
 import secrets
 from collections.abc import Mapping, Sequence
@@ -10,7 +10,7 @@ from hpn.catalogue import Catalogue
 
 
 def new_id() -> str:
-    """A new id; none begins with the hyphen of a command's option."""
+    """New id; it never begins with a hyphen, which would look like a command's option."""
     while (id := secrets.token_urlsafe(16)).startswith("-"):
         pass
     return id
@@ -27,15 +27,15 @@ ANSWER = (
 """Columns of an axis's answer."""
 
 LISTS = ("not_asked", "unknown", "faults")
-"""Those that are lists, as JSON."""
+"""Columns of an answer that hold lists, as JSON."""
 
 Answer = Mapping[str, Any]
-"""Values of these columns."""
+"""Values of the columns of an answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class AxisDraft:
-    """An axis to be kept: its own part and `without` as JSON, the number of its phases or moves, and its answer."""
+    """Axis to save: its own part and `without` as JSON, the number of its phases or moves, and its answer."""
 
     application: bytes = field(repr=False)
     phases: int
@@ -49,7 +49,7 @@ class AxisDraft:
 
 @dataclass(frozen=True, slots=True)
 class SavedAxis(AxisDraft):
-    """An axis as it is kept; `version` counts its changes from 1, `updated_by` is a key or the author as typed."""
+    """Saved axis; `version` counts its changes from 1, `updated_by` is a key's name or the author as typed."""
 
     number: int = 0
     version: int = 1
@@ -58,11 +58,21 @@ class SavedAxis(AxisDraft):
 
 
 @dataclass(frozen=True, slots=True)
-class RevisionDraft:
-    """A document to be frozen under a label; `content` is what there is of it, `result` the reply to a selection.
+class AxesOfGear:
+    """Axes of a machine with one gear: how many there are, their gears, and numbers and names of the first."""
 
-    `head` has the columns of a selection's line that follow its latest revision, `axis` what becomes of its working
-    copy with this one; None where it is frozen as it is. The store keeps one copy of each version of the catalogue.
+    axes: int
+    quantity: int
+    first: tuple[tuple[int, str | None], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RevisionDraft:
+    """Document to freeze under a label; `content` is the whole document as JSON, `result` the reply to a selection.
+
+    `head` has the columns of a selection's line in the list that follow its latest revision. `axis` is the working copy
+    from this revision on; None leaves the working copy as it is. The store keeps one copy of each version of the
+    catalogue.
     """
 
     label: str
@@ -83,7 +93,7 @@ class RevisionDraft:
 
 @dataclass(frozen=True, slots=True)
 class RevisionLine:
-    """One line of the list of revisions."""
+    """Line of the list of revisions."""
 
     number: int
     label: str
@@ -100,10 +110,10 @@ class RevisionLine:
 
 @dataclass(frozen=True, slots=True)
 class MachineDraft:
-    """A machine to be kept, with its axes in their order, and revisions that it has had elsewhere, with their moments.
+    """Machine to save, with its axes in their order, and its revisions from elsewhere, each with its moment.
 
-    `id` is what it is kept under, `owner` the name of the API key that keeps it, None without one; `caller` stands for
-    that key or else the address, whose unsaved machines are counted.
+    `id` is the id of the new document, `owner` the name of the API key that saves it, None without a key. `caller`
+    stands for that key or else for the address; the store counts the unsaved machines of each caller.
     """
 
     axes: Sequence[AxisDraft] = field(repr=False)
@@ -121,15 +131,15 @@ class MachineDraft:
 
     @property
     def bytes(self) -> int:
-        """Size of the axes' own parts."""
+        """Size of the axes' own parts, in bytes."""
         return sum(len(axis.application) for axis in self.axes)
 
 
 @dataclass(frozen=True, slots=True)
 class DocumentLine:
-    """One line of a list of documents; `saved` is None while nobody has saved it, `version` counts changes from 1.
+    """Line of a list of documents; `saved` is None until somebody saves it, `version` counts changes from 1.
 
-    `axes`, `suitable`, `unsuitable` and `open` are numbers of axes. By the versions that `today_of` names, so many axes
+    `axes`, `suitable`, `unsuitable` and `open` are numbers of axes. By the versions in `today_of`, `today_changed` axes
     get another verdict; `today_axes` are the numbers of the first of them, as JSON.
     """
 
@@ -159,8 +169,35 @@ class DocumentLine:
 
 
 @dataclass(frozen=True, slots=True)
+class MachineLine(DocumentLine):
+    """Line of the page of machines; a figure that an answer of an earlier version lacks is None.
+
+    `gears` is the number of gears, `kinds` the number of different designations. `changes` counts the changes since the
+    latest revision, and `governing_axis` is the number of the axis with the largest utilisation.
+    """
+
+    gears: int | None
+    kinds: int | None
+    weight_kg: float | None
+    governing_axis: int | None
+    changes: int
+    common: str
+
+
+@dataclass(frozen=True, slots=True)
+class MachineList:
+    """Part of the page of machines: lines, governing axes by the ids of their machines, the cursor to the next part,
+    and numbers of machines by the names of filters."""
+
+    lines: Sequence[MachineLine]
+    governing: Mapping[str, SavedAxis]
+    next_cursor: str | None
+    counts: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
 class Machine(DocumentLine):
-    """A document with its working copy: common values as JSON, the order of its axes by number, and these or some."""
+    """Document with its working copy: common values as JSON, the order of its axes by number, and all or some axes."""
 
     common: str
     order: tuple[int, ...]

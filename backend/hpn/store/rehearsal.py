@@ -1,4 +1,4 @@
-"""A rehearsal of saving: everything that it does to the tables, taken back in the same transaction."""
+"""Rehearsal of saving: writes the same rows as saving, then takes them back in the same transaction."""
 
 import secrets
 from dataclasses import replace
@@ -13,24 +13,25 @@ from hpn.store.writing import insert
 
 
 def _rehearsed(size: int) -> Draft:
-    """Content of so many bytes that can't be packed."""
+    """Draft with a result of `size` bytes that can't be compressed."""
     return Draft(
         application=b"{}", result=secrets.token_bytes(size), engine_version="", catalogue_version="", selected=None
     )
 
 
 REHEARSED = (_rehearsed(64 * 1024), *[_rehearsed(1500)] * 12)
-"""Drafts of a rehearsal, each saved under a new id; nobody ever sees them. More than most selections take, as a small
-row still finds a place in a file of a full disk; in PostgreSQL of both files, as long results stand in one of their
-own, and rows in pages of 8 kB.
+"""Drafts of a rehearsal, each saved under a new id; no reader ever sees them.
+
+They take more room than most selections, since a small row still finds a place in the file on a full disk. In
+PostgreSQL they need room in both files: long results stand in a file of their own, and rows in pages of 8 kB.
 """
 
 
 async def rehearse(connection: AsyncConnection, catalogue: Catalogue | None = None) -> None:
-    """Save and take it back; fails where saving would fail. The catalogue is kept, as the first saving would keep it.
+    """Save and take it back; fails where saving would fail. The catalogue stays, as the first saving would keep it.
 
-    The first is saved twice under one key, which has to save it once: a database that was restored without its unique
-    indexes keeps that no longer, and a catalogue that is there twice can't be found.
+    The first draft is saved twice under one key and must appear once: a database that was restored without its unique
+    indexes fails here, and a catalogue that exists twice can't be found.
     """
     for table in (catalogues, deletions):
         await connection.execute(select(literal(1)).select_from(table).limit(1))

@@ -16,12 +16,13 @@ from hpn.store.records import ANSWER, LISTS, RevisionLine, new_id
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A selection that is about to be saved: the application as it was given, and the reply it got, byte for byte.
+    """Selection to save: the application as it was given, and the reply to it, byte for byte.
 
     `designation` is the gear that its page shows first, with its status and utilisation. `owner` is the name of the API
-    key that saves it, None without one. `id` is what it is saved under, unless its idempotency key has saved it before.
-    `catalogue` is the one that was asked; the store keeps one copy of each version. `answer` has those columns of an
-    axis's answer that are no fields of this, `phases` is their number, and `label` that of the first revision.
+    key that saves it, None without a key. `id` is the id of the new selection; where its idempotency key has saved the
+    selection before, that one's id holds. `catalogue` is the catalogue of the reply; the store keeps one copy of each
+    version. `answer` has the columns of an axis's answer that are no fields of this class, `phases` is the number of
+    phases, and `label` the label of the first revision.
     """
 
     application: bytes
@@ -47,15 +48,15 @@ class Draft:
 
     @property
     def digest(self) -> str:
-        """Fingerprint of what the caller sent; equal for equal requests, whatever engine or catalogue answered."""
-        sent: list[object] = [self.application.decode(), self.title, self.reference]
+        """Fingerprint of the request; equal for equal requests, whichever engine or catalogue answered."""
+        parts: list[object] = [self.application.decode(), self.title, self.reference]
         later = [self.author, self.revision, self.ordering_code]
-        # Earlier versions knew none of these: a retry of what they saved has the same fingerprint.
-        return hashlib.sha256(orjson.dumps(sent + later if any(later) else sent)).hexdigest()
+        # Earlier versions knew none of these: without them a retry of an earlier request has the same fingerprint.
+        return hashlib.sha256(orjson.dumps(parts + later if any(later) else parts)).hexdigest()
 
     @property
     def columns(self) -> dict[str, Any]:
-        """Answer of the selection's axis, whole."""
+        """Answer of the selection's axis: all columns."""
         own = ("selected", "designation", "utilisation", "engine_version", "catalogue_version")
         empty = dict.fromkeys(ANSWER) | dict.fromkeys(LISTS, "[]")
         return (
@@ -65,11 +66,11 @@ class Draft:
 
 @dataclass(frozen=True, slots=True)
 class SelectionLine:
-    """One line of a list of saved selections.
+    """Line of a list of saved selections.
 
-    `designation` is the gear that its page shows first, as it was judged then; None where an earlier version has saved
-    a reply that can't be read. `version` counts its changes from 1. By the versions that `today_of` names, its gear and
-    verdict are others where `today_changed` is not 0.
+    `designation` is the gear that its page shows first, with the verdict of its revision; None where the reply of an
+    earlier version can't be read. `version` counts its changes from 1. Where `today_changed` is not 0, the versions in
+    `today_of` give another gear or verdict.
     """
 
     id: str
@@ -94,9 +95,9 @@ class SelectionLine:
 
 @dataclass(frozen=True, slots=True)
 class SavedSelection(SelectionLine):
-    """A saved selection as a revision has it; `owner` is the name of the API key that saved it, None without one.
+    """Saved selection in one revision; `owner` is the name of the API key that saved it, None without a key.
 
-    `label` is that of this revision, `revisions` are all, the latest first.
+    `label` is the label of this revision, `revisions` are all, the latest first.
     """
 
     owner: str | None
@@ -108,22 +109,22 @@ class SavedSelection(SelectionLine):
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """Part of a list, newest first; `next_cursor` asks for the part that follows, None at the end."""
+    """Part of a list, newest first; `next_cursor` asks for the next part, None at the end."""
 
     selections: list[SelectionLine]
     next_cursor: str | None
 
 
 def search_text(*texts: str | None) -> str:
-    """Text that a search looks through: labels in one case, each on a line."""
+    """Text for searches: labels in lower case, one a line."""
     return "\n".join(filter(None, texts)).casefold()
 
 
-# --- Replies are some 80 kB of repetitive JSON, of which a tenth is kept -------------------------------------------
+# --- Replies are some 80 kB of repetitive JSON; packed they take a tenth -------------------------------------------
 
 
 def packed(content: bytes) -> bytes:
-    """A zstd frame of the content."""
+    """Zstd frame of the content."""
     return zstandard.compress(content)
 
 

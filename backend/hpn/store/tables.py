@@ -1,8 +1,9 @@
-"""The tables as they are after the last migration."""
+"""Tables after the last migration."""
 
 from datetime import UTC, datetime
 
 from sqlalchemy import (
+    BigInteger,
     Boolean,
     Column,
     DateTime,
@@ -21,17 +22,17 @@ from sqlalchemy.types import TypeDecorator
 
 
 class UtcTime(TypeDecorator[datetime]):
-    """A moment in UTC, also where the database keeps no time zone (SQLite)."""
+    """Moment in UTC, even where the database keeps no time zone (SQLite)."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """To the database."""
+        """Moment in UTC for the database."""
         return None if value is None else value.astimezone(UTC)
 
     def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
-        """From the database."""
+        """Moment from the database, in UTC."""
         return None if value is None else value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
 
 
@@ -41,26 +42,26 @@ documents = Table(
     "documents",
     metadata,
     Column("id", String(32), primary_key=True),
-    Column("kind", String(9), nullable=False),  # selection or machine, and it stays that
+    Column("kind", String(9), nullable=False),  # selection or machine; never changes
     Column("created", UtcTime, nullable=False),
     Column("updated", UtcTime, nullable=False),
-    Column("saved", UtcTime),  # null while nobody has saved it: it goes by itself
+    Column("saved", UtcTime),  # null until somebody saves it; an unsaved one is deleted after a day
     Column("title", Text),
     Column("reference", Text),
     Column("author", Text),
-    Column("revision", Text),  # of a selection as its author calls it, of a machine the latest label
+    Column("revision", Text),  # of a selection its author's text, of a machine the latest label
     Column("note", Text),
     Column("owner", Text),  # name of the API key that saved it
-    Column("caller", Text, nullable=False, server_default=""),  # hash of the key or address that has not saved it yet
-    # Counts changes of title block, common values, order and set of axes: callers name what they have seen by it.
+    Column("caller", Text, nullable=False, server_default=""),  # of an unsaved machine: hash of key or address
+    # Counts changes of title block, common values, order and set of axes: callers name the version that they have seen.
     Column("version", Integer, nullable=False, server_default="1"),
     Column("search_text", Text, nullable=False, server_default=""),
     Column("axes", Integer, nullable=False, server_default="0"),
     Column("suitable", Integer, nullable=False, server_default="0"),
     Column("unsuitable", Integer, nullable=False, server_default="0"),
     Column("open", Integer, nullable=False, server_default="0"),
-    Column("revisions", Integer, nullable=False, server_default="0"),  # the number of the latest
-    # Of a selection the gear that its page shows first, as it was judged then; null where an earlier version's reply
+    Column("revisions", Integer, nullable=False, server_default="0"),  # number of the latest one
+    # Of a selection the gear that its page shows first, with its first verdict; null where an earlier version's reply
     # can't be read. Of a machine the largest utilisation of an axis with a suitable gear.
     Column("selected", Text),
     Column("designation", Text),
@@ -70,15 +71,26 @@ documents = Table(
     Column("engine_version", Text, nullable=False),
     Column("catalogue_version", Text, nullable=False),
     Column("bytes", Integer, nullable=False, server_default="0"),  # of the axes' own parts
-    Column("numbers", Integer, nullable=False, server_default="0"),  # numbers of axes given so far
-    # By today's engine and catalogue, whose versions `today_of` names; null until they have been asked.
+    Column("numbers", Integer, nullable=False, server_default="0"),  # highest number given to an axis so far
+    # Verdict of today's engine and catalogue, whose versions `today_of` names; null before they have been asked.
     Column("today_of", Text),
     Column("today_changed", Integer),  # axes with another verdict
     Column("today_selected", Text),
     Column("today_status", Text),
-    Column("today_axes", Text),  # numbers of the first of them, as JSON
-    Column("today_taken", UtcTime),  # when a process has begun to ask
-    # Long texts stand last: what stands behind them is read through all their pages.
+    Column("today_axes", Text),  # numbers of the first such axes, as JSON
+    Column("today_taken", UtcTime),  # moment when a process began to ask
+    # Of a machine: gears to order, their kinds and mass, null where the kind or mass of one is unknown; and the axis
+    # with the largest utilisation.
+    Column("gears", BigInteger),
+    Column("kinds", Integer),
+    Column("weight_kg", Double),
+    Column("governing_axis", Integer),
+    # Moments of the latest revision and of the last change of title block, common values or order; number of axes
+    # changed, added or removed since the revision, plus 1 for a change of the document itself.
+    Column("revised", UtcTime),
+    Column("edited", UtcTime),
+    Column("changes", Integer, nullable=False, server_default="0"),
+    # Long texts stand last: to reach a column behind them, SQLite reads all their pages.
     Column("common", Text, nullable=False, server_default="{}"),
     Column("axis_order", Text, nullable=False, server_default="[]"),
     Index("documents_saved", "kind", "saved", "id"),
@@ -101,7 +113,7 @@ axes = Table(
     Column("version", Integer, nullable=False, server_default="1"),
     Column("updated", UtcTime, nullable=False),
     Column("updated_by", Text),
-    Column("removed", UtcTime),  # null while it is there; its number can bring it back
+    Column("removed", UtcTime),  # null while the axis is present; its number can restore it
     Column("name", Text),
     Column("quantity", Integer, nullable=False, server_default="1"),
     Column("note", Text),
@@ -127,13 +139,13 @@ axes = Table(
     Column("worst_utilisation", Double),
     Column("worst_governing_check", Text),
     Column("not_asked", Text, nullable=False, server_default="[]"),
-    Column("unknown", Text, nullable=False, server_default="[]"),  # figures of which an earlier version knew nothing
+    Column("unknown", Text, nullable=False, server_default="[]"),  # figures that an earlier version did not know
     Column("faults", Text, nullable=False, server_default="[]"),
     Column("engine_version", Text, nullable=False),
     Column("catalogue_version", Text, nullable=False),
-    Column("today_of", Text),  # versions that it was asked by again
-    Column("today_changed", Boolean),  # another verdict by these
-    Column("application", Text, nullable=False),  # its own part, as it was sent
+    Column("today_of", Text),  # versions of the latest verdict of today
+    Column("today_changed", Boolean),  # True where these versions give another verdict
+    Column("application", Text, nullable=False),  # the axis's own part, as it was sent
     Index("axes_counts", "document", "removed", "status", "utilisation", "phases"),
 )
 
@@ -143,7 +155,7 @@ revisions = Table(
     _of_document(),
     Column("number", Integer, primary_key=True, autoincrement=False),
     Column("label", Text, nullable=False),
-    Column("label_key", Text, nullable=False),  # in one case
+    Column("label_key", Text, nullable=False),  # casefolded
     Column("created", UtcTime, nullable=False),
     Column("created_by", Text),
     Column("author", Text),
@@ -153,7 +165,7 @@ revisions = Table(
     Column("axes", Integer, nullable=False),
     Column("engine_version", Text, nullable=False),
     Column("catalogue_version", Text, nullable=False),
-    # Frozen, and the reply to a selection byte for byte.
+    # The frozen document, and the reply to a selection byte for byte.
     Column("content_packed", LargeBinary, nullable=False),
     Column("result_packed", LargeBinary),
     Index("revisions_label", "document", "label_key", unique=True),
@@ -162,19 +174,19 @@ revisions = Table(
 idempotency_keys = Table(
     "idempotency_keys",
     metadata,
-    # Only a hash, because what is deleted is to be gone.
+    # Only a hash: deleted content must be gone.
     Column("key_sha256", String(64), primary_key=True),
     Column("digest", String(64)),
     Column("document", String(32)),
-    Column("part", Text),  # of the document that the key has made: numbers of axes, or a label
-    Column("deleted", UtcTime),  # when its document was deleted
+    Column("part", Text),  # of the document: numbers of axes, or a label
+    Column("deleted", UtcTime),  # moment when its document was deleted
     Index("idempotency_keys_document", "document"),
 )
 
 askings = Table(
     "askings",
     metadata,
-    Column("versions", Text, primary_key=True),  # of engine and catalogue, by which documents are asked again
+    Column("versions", Text, primary_key=True),  # of engine and catalogue that documents are asked by again
     Column("begun", UtcTime, nullable=False),
 )
 
@@ -191,9 +203,9 @@ motor_lists = Table(
     "motor_lists",
     metadata,
     Column("id", String(32), primary_key=True),
-    Column("owner", Text, nullable=False, server_default=""),  # name of the API key that keeps it, blank without one
+    Column("owner", Text, nullable=False, server_default=""),  # name of the API key that keeps it, blank without a key
     Column("name", Text, nullable=False),
-    Column("name_key", Text, nullable=False),  # in one case
+    Column("name_key", Text, nullable=False),  # casefolded
     Column("created", UtcTime, nullable=False),
     Column("updated", UtcTime, nullable=False),
     Column("version", Integer, nullable=False, server_default="1"),
@@ -206,6 +218,6 @@ catalogues = Table(
     "catalogues",
     metadata,
     Column("version", Text, primary_key=True),
-    # The JSON of every figure is some 100 kB; packed it is a fiftieth of that.
+    # JSON of all figures: some 100 kB, a fiftieth of that when packed.
     Column("content_brotli", LargeBinary, nullable=False),
 )

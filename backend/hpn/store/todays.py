@@ -1,6 +1,6 @@
-"""Verdicts of today: which documents get another one by today's engine and catalogue, asked once for each version.
+"""Verdicts of today: documents that get another verdict by today's engine and catalogue, asked once for each version.
 
-`today_of` names the versions that were asked. A document or axis whose own answer is of these versions needs no asking.
+`today_of` names the versions of that verdict. A document or axis whose own answer is of these versions needs none.
 """
 
 from collections.abc import Sequence
@@ -20,10 +20,10 @@ from hpn.store.tables import askings, axes, documents, revisions
 from hpn.store.writing import order_text
 
 LEASE = timedelta(minutes=5)
-"""Time after which a document that a process has taken to ask, and has not answered, may be taken by another."""
+"""Time after which a process may take a document that another has taken to ask and has not answered."""
 
 MOST_NAMED = 100
-"""Axes of a machine with another verdict that are named."""
+"""Most axes with another verdict that a machine lists by number."""
 
 
 class Versions(NamedTuple):
@@ -34,13 +34,13 @@ class Versions(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Both as one text."""
+        """Both versions as one text."""
         return f"{self.engine} {self.catalogue}"
 
 
 @dataclass(frozen=True, slots=True)
 class Stale:
-    """A document to be asked again; of a selection its latest revision: the application and the verdict of then."""
+    """Document to ask again; for a selection with the application and the verdict of its latest revision."""
 
     id: str
     kind: DocumentKind
@@ -57,7 +57,7 @@ NAMED = ("id", "kind", "revisions", "selected", "designation", "status", "orderi
 
 
 class AxisVerdict(NamedTuple):
-    """An axis as it was asked, and whether it gets another verdict."""
+    """Axis as it was asked, and whether its verdict has changed."""
 
     axis: SavedAxis
     changed: bool
@@ -75,22 +75,22 @@ _revision = msgspec.json.Decoder(_Revision).decode
 
 
 def pending(versions: Versions) -> ColumnElement[bool]:
-    """Condition for a saved document that has not been asked by these versions."""
+    """Condition for a saved document without a verdict by these versions."""
     c, key = documents.c, versions.key
     return and_(c.saved.is_not(None), or_(c.today_of.is_(None), c.today_of < key, c.today_of > key))
 
 
 async def count_pending(connection: AsyncConnection, versions: Versions, kind: DocumentKind | None) -> int:
-    """Number of documents that have not been asked by these versions."""
+    """Number of saved documents without a verdict by these versions."""
     of_kind = [] if kind is None else [documents.c.kind == kind]
     query = select(func.count()).select_from(documents).where(pending(versions), *of_kind)
     return int((await connection.execute(query)).scalar_one())
 
 
 async def _is_their_turn(connection: AsyncConnection, versions: Versions, now: datetime, started: datetime) -> bool:
-    """True where documents are asked by these versions: those of the process that came last, or whose turn is over.
+    """True where it is these versions' turn: they began last, or the other versions' turn is over.
 
-    While two versions run beside each other, neither asks again what the other has just asked.
+    While two versions run side by side, neither asks again for documents that the other has just asked.
     """
     c = askings.c
     last = (await connection.execute(select(c.versions, c.begun).order_by(c.begun.desc()).limit(1))).one_or_none()
@@ -104,16 +104,17 @@ async def _is_their_turn(connection: AsyncConnection, versions: Versions, now: d
 
 
 async def take_stale(connection: AsyncConnection, versions: Versions, most: int, started: datetime) -> list[Stale]:
-    """Documents that a process that has started at a moment asks from now on, the newest first; no other takes them
-    before their time is up."""
+    """Documents that a process, started at a moment, is to ask again from now on, the newest first; they are locked for
+    others until LEASE is over."""
     c, now = documents.c, datetime.now(UTC)
     if not await _is_their_turn(connection, versions, now, started):
         return []
     free = or_(c.today_taken.is_(None), c.today_taken < now - LEASE)
     newest = select(c.id).where(pending(versions), free).order_by(c.saved.desc()).limit(most)
-    taken = newest.with_for_update(skip_locked=True).subquery()
+    # A subquery may be run again for each row, and takes others each time; PostgreSQL runs a common table once.
+    free_rows = newest.with_for_update(skip_locked=True).cte()
     columns = [c[name] for name in NAMED]
-    mine = update(documents).where(c.id.in_(select(taken.c.id)), free).values(today_taken=now)
+    mine = update(documents).where(c.id.in_(select(free_rows.c.id)), free).values(today_taken=now)
     rows = list(await connection.execute(mine.returning(*columns, c.engine_version, c.catalogue_version)))
     stale = [Stale(**dict(zip(NAMED, row, strict=False)), is_of_today=tuple(row[-2:]) == versions) for row in rows]
     selections = [each for each in stale if each.kind == "selection" and not each.is_of_today]
@@ -130,7 +131,7 @@ async def _contents(connection: AsyncConnection, ids: Sequence[str]) -> dict[str
 
 
 async def settle(connection: AsyncConnection, stale: Stale, versions: Versions, values: dict[str, Any] | None) -> None:
-    """Keep what a selection gets today, unless it has another revision since; None leaves it to be asked again."""
+    """Keep a selection's verdict of today, unless it has a newer revision; None leaves it to be asked again."""
     c = documents.c
     own = update(documents).where(c.id == stale.id, c.revisions == stale.revisions)
     columns = {} if values is None else {**values, "today_of": versions.key}
@@ -145,7 +146,7 @@ def _axes_of(id: str) -> ColumnElement[bool]:
 
 
 def _unasked(versions: Versions) -> ColumnElement[bool]:
-    """Condition for an axis whose answer is of other versions, and that was not asked by these."""
+    """Condition for an axis whose answer is of other versions, and that has no verdict by these."""
     c = axes.c
     of_others = or_(c.engine_version != versions.engine, c.catalogue_version != versions.catalogue)
     return and_(of_others, or_(c.today_of.is_(None), c.today_of != versions.key))
@@ -154,7 +155,7 @@ def _unasked(versions: Versions) -> ColumnElement[bool]:
 async def read_unasked(
     connection: AsyncConnection, id: str, versions: Versions, most: int
 ) -> tuple[str, list[SavedAxis]]:
-    """Common values of a machine as JSON, and some of its axes that have not been asked."""
+    """Common values of a machine as JSON, and some of its axes without a verdict of today."""
     common = await connection.execute(select(documents.c.common).where(documents.c.id == id))
     query = select(*AXIS).where(_axes_of(id), _unasked(versions)).order_by(axes.c.number).limit(most)
     return common.scalar_one_or_none() or "{}", [axis_in(row) for row in await connection.execute(query)]
@@ -163,7 +164,7 @@ async def read_unasked(
 async def keep_verdicts(
     connection: AsyncConnection, id: str, versions: Versions, verdicts: Sequence[AxisVerdict]
 ) -> None:
-    """Keep what axes get today, but for those that have changed since they were asked."""
+    """Keep today's verdicts on axes, except on axes that have changed since they were asked."""
     c = axes.c
     state = ("number", "version", "engine_version", "catalogue_version")
     one = update(axes).where(c.document == id, *(c[name] == bindparam(f"own_{name}") for name in state))
@@ -183,7 +184,7 @@ async def keep_verdicts(
 
 
 async def settle_machine(connection: AsyncConnection, id: str, versions: Versions) -> bool:
-    """Count the axes of a machine with another verdict; False, and nothing kept, where some have not been asked."""
+    """Count the axes of a machine with another verdict; False, and no count kept, while some have not been asked."""
     c = documents.c
     await connection.execute(select(c.id).where(c.id == id).with_for_update())
     left = select(func.count()).select_from(axes).where(_axes_of(id), _unasked(versions))

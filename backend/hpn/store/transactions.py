@@ -1,4 +1,4 @@
-"""Transactions on the database of a store, each within a time limit; whatever fails in it, fails as a StoreError."""
+"""Transactions on the database of a store, each within a time limit; every failure is raised as a StoreError."""
 
 import asyncio
 import logging
@@ -18,36 +18,33 @@ logger = logging.getLogger(__name__)
 T = TypeVar("T")
 
 DISK_FULL = "53100"
-"""State of an error by which PostgreSQL says that."""
+"""SQLSTATE of PostgreSQL for a full disk."""
 SNAPSHOT = {"isolation_level": "REPEATABLE READ"}
-"""Execution options of reads on PostgreSQL, where each query else sees what is newest; on SQLite there is no other."""
+"""Execution options of reads on PostgreSQL, where else each query sees the newest state; SQLite needs none."""
 
 UNAVAILABLE = "saved selections are temporarily unavailable"
 
 
 class Transactions:
-    """A database that is opened when it is first needed, and what is done in it.
+    """Database that opens at first need, and its transactions.
 
     Every function raises StoreUnavailableError where the database can't be reached or takes longer than `seconds`, and
-    works again as soon as it can; StoreFullError where a disk is full.
+    works again as soon as the database does; StoreFullError where a disk is full.
     """
 
     def __init__(self, address: str, *, seconds: float = 5.0, password: str | None = None) -> None:
-        # A database that is only busy gives up by itself, just before we would.
+        # A busy database gives up by itself, just before this limit.
         self._engine = make_engine(address, seconds=seconds * 0.8, password=password)
         self._seconds = seconds
         self._turn = asyncio.Lock()
         self._opening: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
-        """Bring the database up to date, however long it takes; once done, this costs nothing.
-
-        Raises NewerDatabaseError, for good, where a newer version has changed the database.
-        """
+        """Upgrade the database, however long that takes; a second call costs nothing."""
         if self._opening is None or (self._opening.done() and self._failed_to_open()):
             self._opening = asyncio.create_task(bring_up_to_date(self._engine))
         try:
-            # The work belongs to all who wait for it: one who gives up must not cancel it.
+            # The upgrade serves all waiting callers: a caller that gives up must not cancel it.
             await asyncio.shield(self._opening)
         except (SQLAlchemyError, OSError) as error:
             raise _unavailable(error) from error
@@ -65,7 +62,7 @@ class Transactions:
 
     @asynccontextmanager
     async def _reachable(self) -> AsyncIterator[None]:
-        """Limits what happens inside in time, and says of every failure of the database that it is one."""
+        """Limit the time of the block, and raise every failure of the database as StoreUnavailableError."""
         try:
             async with asyncio.timeout(self._seconds):
                 await self.open()
@@ -75,7 +72,7 @@ class Transactions:
 
     @asynccontextmanager
     async def _reading(self) -> AsyncIterator[AsyncConnection]:
-        """Connection whose queries all see the same state, whatever is written between them."""
+        """Connection for queries that all see one state, even while others write."""
         options = {} if self._engine.dialect.name == "sqlite" else SNAPSHOT
         async with self._reachable(), self._engine.execution_options(**options).connect() as connection:
             yield connection
@@ -83,9 +80,9 @@ class Transactions:
     async def _write(self, work: Callable[[AsyncConnection], Awaitable[T]]) -> T:
         """Result of the work, once its transaction is on disk; it is rolled back where the work raises.
 
-        On PostgreSQL a caller that stops waiting cancels the transaction. SQLite has one writer at a time: those of
-        this process take turns, and wait in SQLite only for other processes. There a transaction that has begun runs to
-        its end even if nobody waits for it any more: if it is cancelled, the driver may leave the database locked.
+        On PostgreSQL a caller that stops waiting cancels the transaction. SQLite has one writer at a time: writers of
+        this process take turns, and wait in SQLite only for other processes. A transaction that has begun in SQLite
+        runs to its end even if no caller waits any more: a cancelled one may leave the database locked by the driver.
         """
         async with self._reachable():
             if self._engine.dialect.name != "sqlite":
@@ -101,15 +98,16 @@ class Transactions:
                 async with connection.begin():
                     return await work(connection)
             except DBAPIError as error:
-                # A connection may keep what is wrong, such as that the database is read-only; the next one is new.
+                # A connection may stay faulty, for instance read-only; the next one is new.
                 await connection.invalidate()
                 if getattr(error.orig, "sqlite_errorcode", 0) & 0xFF == sqlite3.SQLITE_READONLY:
-                    await self._engine.dispose()  # all of a process share what SQLite knows of the file
+                    await self._engine.dispose()  # all connections of a process share SQLite's knowledge of the file
                 raise
 
 
 def _unavailable(error: Exception) -> StoreUnavailableError:
-    logger.warning("the store is not available: %s: %s", type(error).__name__, error)
+    cause = (error.orig if isinstance(error, DBAPIError) else None) or error
+    logger.warning("the store is not available: %s: %s", type(cause).__name__, " ".join(str(cause).split()))
     return StoreFullError() if _is_of_full_disk(error) else StoreUnavailableError(UNAVAILABLE)
 
 

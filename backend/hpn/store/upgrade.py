@@ -1,4 +1,4 @@
-"""Bringing a database up to this version's tables, also when several workers start at once."""
+"""Upgrade of a database to this version's tables, safe while several workers start at once."""
 
 from pathlib import Path
 
@@ -34,7 +34,7 @@ async def bring_up_to_date(engine: AsyncEngine) -> None:
 
 
 def missing_parts(connection: Connection) -> list[str]:
-    """Names of tables, columns and indexes of this version that the database lacks; what it has besides may stay."""
+    """Names of tables, columns and indexes of this version that the database lacks; additional ones may stay."""
     differences = compare_metadata(MigrationContext.configure(connection), metadata)
     added = [each for each in differences if isinstance(each, tuple) and each[0].startswith("add_")]
     return [".".join(str(getattr(part, "name", part)) for part in each[1:] if part is not None) for each in added]

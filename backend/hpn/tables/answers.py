@@ -1,6 +1,6 @@
-"""Answers to the questions about a table as programs give them: `Moment:T`, `3:Nm`, `decimal:,`."""
+"""Answers to the questions about a table in the form that programs send: `Moment:T`, `3:Nm`, `decimal:,`."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
 
@@ -21,7 +21,7 @@ MOST_SHOWN = 60
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """Answers as they were given: those about the whole table, those about columns by their names, and what is none."""
+    """Answers as given: about the whole table, about columns by their names, and faults for texts without an answer."""
 
     whole: Choices = field(default_factory=lambda: Choices(of=ANY))
     columns: Sequence[tuple[str, str]] = ()
@@ -29,9 +29,9 @@ class Answers:
 
 
 def answers_of(texts: Sequence[str]) -> Answers:
-    """Answers of texts with a colon between column and meaning, or question and answer."""
+    """Answers from texts with a colon between column and meaning, or between question and answer."""
     pairs = [(name.strip(), meaning.strip()) for name, _, meaning in (text.rpartition(":") for text in texts)]
-    faults = tuple(_said(NO_ANSWER, text) for text, (name, _) in zip(texts, pairs, strict=True) if not name)
+    faults = tuple(_refusal(NO_ANSWER, text) for text, (name, _) in zip(texts, pairs, strict=True) if not name)
     whole: dict[str, Any] = {name: meaning for name, meaning in pairs if name in NAMES}
     return Answers(Choices(of=ANY, **whole), [pair for pair in pairs if pair[0] and pair[0] not in NAMES], faults)
 
@@ -40,47 +40,43 @@ T = TypeVar("T")
 
 
 def answered(
-    given: Sequence[str], inputs: Inputs, read: Callable[[Choices], T], columns_of: Callable[[T], Sequence[Column]]
+    texts: Sequence[str], inputs: Inputs, read: Callable[[Choices], T], columns_of: Callable[[T], Sequence[Column]]
 ) -> tuple[T, tuple[Sentence, ...]]:
-    """A reading by answers of a program, and what is wrong with these: those about columns need a first one."""
-    answers = answers_of(given)
-    found = read(answers.whole)
-    columns = columns_of(found)
+    """A reading by a program's answers, and their faults; answers about columns need a first reading."""
+    answers = answers_of(texts)
+    reading = read(answers.whole)
+    columns = columns_of(reading)
     if columns and answers.columns:
         answers = about(columns, answers, inputs)
-        found = read(answers.whole)
-    return found, answers.faults
+        reading = read(answers.whole)
+    return reading, answers.faults
 
 
 def about(columns: Sequence[Column], answers: Answers, inputs: Inputs) -> Answers:
-    """The answers with those about columns by their places, and what is wrong with these."""
+    """The answers, those about columns by their places, and their faults."""
     roles, of_units, faults = dict[int, str](), dict[int, str](), list(answers.faults)
-    meanings = _roles(inputs)
+    called = ((name, each.role) for each in inputs.by_role.values() for name in (each.place, each.role))
+    meanings = {SKIP: SKIP, **dict(called)}  # by the symbol of links, or the name of the column for `hpn fleet`
     for name, meaning in answers.columns:
         text = f"{name}:{meaning}"
         places = _places(columns, name)
         codes = (meaning,) if meaning in units.QUANTITY_OF else spellings.codes_for(meaning)
         if len(places) != 1:
-            faults.append(_said(TWO_COLUMNS if places else NO_COLUMN, text, name=name))
+            faults.append(_refusal(TWO_COLUMNS if places else NO_COLUMN, text, name=name))
         elif meaning in meanings:
             roles[places[0]] = meanings[meaning]
         elif len(codes) == 1:
             of_units[places[0]] = codes[0]
         else:
-            faults.append(_said(NO_MEANING, text, meaning=meaning))
+            faults.append(_refusal(NO_MEANING, text, meaning=meaning))
     return Answers(replace(answers.whole, roles=roles, units=of_units), (), tuple(faults))
 
 
-def _roles(inputs: Inputs) -> Mapping[str, str]:
-    """Roles by what they may be called: symbol of links, or name of the column in the tables of `hpn fleet`."""
-    return {SKIP: SKIP} | {name: each.role for each in inputs.by_role.values() for name in (each.place, each.role)}
-
-
 def _places(columns: Sequence[Column], name: str) -> list[int]:
-    """Places of the columns of a heading, else of a number that counts from 1."""
+    """Places of the columns with a heading, else with a number that counts from 1."""
     places = [column.place for column in columns if column.heading.casefold() == " ".join(name.split()).casefold()]
     return places or [column.place for column in columns if name == str(column.place + 1)]
 
 
-def _said(template: str, answer: str, **values: str) -> Sentence:
+def _refusal(template: str, answer: str, **values: str) -> Sentence:
     return Sentence(template, {name: text[:MOST_SHOWN] for name, text in {"answer": answer, **values}.items()})

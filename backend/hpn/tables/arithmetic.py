@@ -1,6 +1,6 @@
-"""Simple arithmetic behind an equals sign, as people type it into a cell: `=40*2`, `=(12+3,5)/2`.
+"""Simple arithmetic behind an equals sign in a typed cell: `=40*2`, `=(12+3,5)/2`.
 
-A grammar of four operations over exact fractions; nothing of it is handed to an interpreter.
+A grammar of four operations over exact fractions; no interpreter sees the text.
 """
 
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from hpn.words.patterns import Pattern
 from hpn.words.wording import N_, Sentence
 
 LONGEST = 60
-"""Characters; each number in them is below 1e1000, so that no result is large enough to take long."""
+"""Characters of a text; each number in it is below 1e1000, so that no result grows slow to calculate."""
 
 _TOKEN = Pattern(r"\s*(?:([0-9.,]+(?:[eE][+-]?[0-9]{1,3})?)|([-+*/()]))", LONGEST, ASCII)
 _MARKS = str.maketrans({"\N{MINUS SIGN}": "-", "\N{EN DASH}": "-", "×": "*", "·": "*", "÷": "/"})
@@ -19,15 +19,15 @@ _WRONG = N_("can’t be calculated; write an expression such as =40*2")
 
 
 class _WrongError(ValueError):
-    """The text is no sum; `told` says what is wrong with a number in it."""
+    """Error for a text that is not a sum; `sentence` describes a wrong number in it."""
 
     def __init__(self, sentence: Sentence | None = None) -> None:
         super().__init__()
-        self.told = sentence
+        self.sentence = sentence
 
 
 def worked_out(text: str, number_of: Callable[[str], str | Sentence | None]) -> str | Sentence:
-    """Number in plain notation that `=…` comes to, or what is wrong with it; `read` reads a number in it."""
+    """Result of `=…` in plain notation, or an error message; `number_of` reads each number in the text."""
     if len(text) > LONGEST:
         return Sentence(_WRONG)
     try:
@@ -38,7 +38,7 @@ def worked_out(text: str, number_of: Callable[[str], str | Sentence | None]) -> 
     except OverflowError:
         return Sentence(N_("is too large"))
     except _WrongError as wrong:
-        return wrong.told or Sentence(_WRONG)
+        return wrong.sentence or Sentence(_WRONG)
     if value and not number:
         return Sentence(N_("is too small"))
     return repr(number).removesuffix(".0")
@@ -52,7 +52,7 @@ class _Sum:
         self._step()
 
     def value(self) -> Fraction:
-        """The whole text's value; raises _WrongError and what fractions raise."""
+        """Value of the whole text; raises _WrongError and the errors of fractions."""
         value = self._sum()
         if self.number or self.mark:
             raise _WrongError

@@ -1,6 +1,6 @@
-"""A table of axes that somebody uploads, in whichever way it is written: a row is a phase, those of an axis together.
+"""An uploaded table of axes, in any layout: a row is a phase, and the rows of an axis stand together.
 
-A cell that is no number spoils its axis alone, which is then rejected with its reason.
+A cell that is not a number spoils only its axis, which is rejected with the reason.
 """
 
 from collections.abc import Collection, Sequence
@@ -34,11 +34,11 @@ _OF_RATIO = Pattern(r"\bi\s*=\s*|:\s*1(?![0-9.,])", LONGEST_CELL)
 
 LOADS = Choice("loads", {"axis": N_("in all phases of the axis"), "phase": N_("in its own phase alone")})
 _OF_AXIS = {"FRi": ("FR", "output_load.radial_N"), "FAi": ("FA", "output_load.axial_N")}
-"""Loads of a phase: role and place of the same load for a whole axis."""
+"""Loads of a phase -> role and place of the same load for a whole axis."""
 
 
 def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()) -> Table:
-    """Reading of a table of cells; raises nothing, `problem` says why there is none."""
+    """Reading of a table of axes; raises nothing, `problem` tells why it can't be read."""
 
     def columns_of(body: TableBody) -> tuple[Column, ...]:
         return settled(_with_names(proposed(body, inputs), body), body, inputs, choices, assumed)
@@ -53,7 +53,9 @@ def read_axes(grid: Grid, inputs: Inputs, choices: Choices = NO_CHOICES, assumed
 
 
 def _with_names(columns: list[Column], body: TableBody) -> list[Column]:
-    """Columns of which one names the phases: headed `name` beside that of the axis, or texts below `Phase`."""
+    """Columns, one of them marked as names of the phases: headed `name` beside that of the axis, or texts below
+    `Phase`.
+    """
     names = [column for column in columns if column.role == AXIS]
     own = [column for column in names if column.heading.casefold() == NAME.place] if len(names) == 2 else []
     if not own and not any(column.role == NAME.role for column in columns):
@@ -64,13 +66,13 @@ def _with_names(columns: list[Column], body: TableBody) -> list[Column]:
 
 
 def _has_names(body: TableBody, place: int) -> bool:
-    """True for a column of texts that may be names of phases."""
+    """True for a column of texts that may name phases."""
     cells = [row[place] for row in body.rows if not is_blank(row[place])]
     return not all(map(is_number, cells)) and all(is_title(cell, LONGEST_NAME) for cell in cells)
 
 
 def _unmerged(body: TableBody, columns: Sequence[Column]) -> TableBody:
-    """A table in which an axis has its name, and each input that is merged, in its first row alone."""
+    """A table with the name of an axis, and each merged input, in the first row of the axis only."""
     axis = next((column.place for column in columns if column.role == AXIS), None)
     once = {column.place for column in columns if column.role not in (*PHASE_ROLES, NAME.role)}
     rows: list[tuple[str, ...]] = []
@@ -89,7 +91,7 @@ def _unmerged(body: TableBody, columns: Sequence[Column]) -> TableBody:
 
 
 def _with_axes(body: TableBody, columns: Sequence[Column]) -> TableBody:
-    """A table with those of its totals and titles among the rows that name an axis or have numbers of a phase."""
+    """A table including those totals and titles that name an axis or have numbers of a phase."""
     places = {column.role: column.place for column in columns}
     named = [row for row in (*body.totals, *body.titles) if AXIS in places and not is_blank(row.cells[places[AXIS]])]
     moving = [places[role] for role in ("T", "n") if role in places]
@@ -101,12 +103,12 @@ def _with_axes(body: TableBody, columns: Sequence[Column]) -> TableBody:
 
 
 _Place = tuple[int, str]
-"""Number of a row and a cell in it."""
+"""Number of a row, and a cell of it."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Rows of an axis: their cells, and the numbers in the columns that are used."""
+    """Rows of an axis: their cells, and the numbers in the used columns."""
 
     name: str
     cells: tuple[tuple[str, ...], ...]
@@ -115,7 +117,7 @@ class _Group:
 
 
 class _AxesInterpreter(Interpreter):
-    """A table on its way to axes."""
+    """Interpreter of a table of axes."""
 
     required = (AXIS, *REQUIRED)
     any_unit = True
@@ -127,7 +129,7 @@ class _AxesInterpreter(Interpreter):
         self.stops: dict[str, str] = {}
 
     def table(self) -> Table:
-        """The table with what is to be asked, or with its axes."""
+        """The table with its open questions, or with its axes."""
         self.ask_columns()
         self.read_numbers()
         self._note_unread()
@@ -141,10 +143,12 @@ class _AxesInterpreter(Interpreter):
         origins |= {str(axis[AXIS]): numbers for axis, numbers in lasting}
         if self.standing:
             self.notes.append(left_out(self.standing))
-        return Table(**self.said, axes=tuple(axis for axis, _ in lasting), origins=origins)
+        return Table(**self.facts, axes=tuple(axis for axis, _ in lasting), origins=origins)
 
     def _note_unread(self) -> None:
-        """Note cells that are rejected with their axes: no numbers, and those in a unit that their column has not."""
+        """Note cells that are rejected with their axes: no numbers, unknown units, and units that don't fit their
+        column.
+        """
         wrong, unknown, strange = list[_Place](), list[_Place](), list[_Place]()
         known = ""
         for number, cells, row in zip(self.body.numbers, self.body.rows, self.rows, strict=True):
@@ -157,29 +161,27 @@ class _AxesInterpreter(Interpreter):
                     known = known or known_units(column.quantity)
                 elif not is_blank(cell) and self._by_size(cell, column) is None:
                     wrong.append((number, cell))
-        self._note(
-            N_("Cells that are not numbers, such as {cell} in row {row}: {count}. Their axes are rejected."), wrong
-        )
+        self._note(N_("Cells that are not numbers, such as {cell} in row {row}: {count}. Their axes stay open."), wrong)
         template = N_(
-            "Cells with a unit that does not fit their column, such as {cell} in row {row}: {count}. Their axes are "
-            "rejected."
+            "Cells with a unit that does not fit their column, such as {cell} in row {row}: {count}. Their axes stay "
+            "open."
         )
         self._note(template, strange)
         template = N_(
-            "Cells with an unknown unit, such as {cell} in row {row}: {count}. Known units: {units}. Their axes are "
-            "rejected."
+            "Cells with an unknown unit, such as {cell} in row {row}: {count}. Known units: {units}. Their axes stay "
+            "open."
         )
         self._note(template, unknown, units=known)
 
     def _note(self, template: str, places: Sequence[_Place], **values: str) -> None:
         for row, cell in places[:1]:
-            said: dict[str, Value] = {"count": len(places), "row": row, "cell": cell[:40], **values}
-            self.notes.append(Sentence(template, said))
+            named: dict[str, Value] = {"count": len(places), "row": row, "cell": cell[:40], **values}
+            self.notes.append(Sentence(template, named))
 
     # --- Rows of an axis ----------------------------------------------------------------------------------------------
 
     def _groups(self) -> list[_Group]:
-        """Rows of each axis; one without a name belongs to the axis above."""
+        """Rows of each axis; a row without a name belongs to the axis above."""
         axis = next((column for column in reversed(self.columns) if column.role == AXIS), None)
         rows = list(zip(self.body.rows, self.rows, self.body.numbers, strict=True))
         if axis is None:
@@ -199,10 +201,10 @@ class _AxesInterpreter(Interpreter):
         return groups
 
     def _ask_unnamed(self, axis: Column) -> None:
-        """Ask for a row without an axis that most likely is none of the axis above it.
+        """Ask about a row without an axis that most likely doesn't belong to the axis above it.
 
-        That is one with no axis above it; and one without a number, most likely a sum, where other rows without an axis
-        have one, or where rows repeat the name of their axis.
+        That is a first row; or a row named like a total; or a row without a number that is most likely a sum, because
+        other rows without an axis have a number, or because rows repeat the name of their axis.
         """
         indices = [column.place for column in self.columns if column.numbers_phases]
         names = [row[axis.place] for row in self.body.rows]
@@ -222,9 +224,10 @@ class _AxesInterpreter(Interpreter):
             self.ask(template, row=self.body.numbers[place])
 
     def _read_loads(self, groups: Sequence[_Group]) -> str:
-        """Phases of a load that stands in the first row of an axis alone, as its pause does; blank while it is asked.
+        """Phases of a load that stands in the first row of an axis only, as its pause does; blank while the question is
+        open.
 
-        Where other axes have loads in several rows, it counts for its own phase unless somebody says otherwise.
+        Where other axes have loads in several rows, it counts for its own phase unless an answer says otherwise.
         """
         roles = {column.role for column in self.columns}
         columns = [
@@ -240,7 +243,7 @@ class _AxesInterpreter(Interpreter):
         return self.choose(LOADS, question, chosen="phase" if several else "")
 
     def _without_stops(self, groups: list[_Group]) -> list[_Group]:
-        """Axes without the rows that are their emergency stop, whose largest torque is T_k."""
+        """Axes without the rows of their emergency stop; the largest torque of these rows is T_k."""
         axis = {column.place for column in self.columns if column.role == AXIS}
         cells = dict(zip(self.body.numbers, self.body.rows, strict=True))
         named = [
@@ -285,7 +288,7 @@ class _AxesInterpreter(Interpreter):
         return self._lasting(values, group, times)
 
     def _number(self, cell: str, number: CellNumber | None, column: Column) -> float | str | None:
-        """A number in the unit of the wire; the cell as it is written where it is none, None where it is blank."""
+        """A number in the unit of the wire; None for a blank cell, and the cell as written for any other."""
         value = self._value(number, column)
         return value if value is not None or is_blank(cell) else str(cell)
 
@@ -294,18 +297,18 @@ class _AxesInterpreter(Interpreter):
         return value if number and isfinite(value := float(number)) else None
 
     def _by_size(self, cell: str, column: Column) -> dict[str, float] | None:
-        """Numbers by size of a cell in the unit of the wire; None where it has none, or its column may have none."""
+        """Numbers by size of a cell in the unit of the wire; None if it has none, or if its column takes none."""
         if column.held is None or column.held.kind != "by_size":
             return None
         marks: Sequence[Decimal] = DECIMALS if not cell.lstrip().startswith("{") else (".",)
         readings = [reading for mark in marks if (reading := numbers_by_size(cell, partial(self._float, column, mark)))]
-        return readings[0] if readings and readings[0] == readings[-1] else None  # no mark is guessed
+        return readings[0] if readings and readings[0] == readings[-1] else None  # a decimal mark is never guessed
 
     def _float(self, column: Column, decimal: Decimal, number: str) -> float | None:
         return self._value(entry(number, decimal, any_unit=True), column)
 
     def _one(self, numbers: dict[str, CellNumber | None], column: Column) -> Any:
-        """Value that the rows of an axis have in common; where they have two, these as they are written: no input."""
+        """Common value of the rows of an axis; if they differ, their cells as written, which is no valid input."""
         cells = [cell for cell in numbers if not is_blank(cell)]
         if not cells or column.held is None:
             return None
@@ -320,7 +323,7 @@ class _AxesInterpreter(Interpreter):
         return [written] if many else written
 
     def _lasting(self, values: dict[str, Any], group: _Group, times: str) -> dict[str, Any]:
-        """An axis whose points in time became durations. Of starts the last one ends the cycle, and is no phase."""
+        """An axis with durations instead of points in time. The last of the starts ends the cycle, and is no phase."""
         moments = [moment for row in group.rows if (moment := self.seconds(row)) is not None]
         if times not in ("starts", "ends") or len(moments) < len(group.rows):
             return values
@@ -330,7 +333,7 @@ class _AxesInterpreter(Interpreter):
         return {name: value[: len(durations)] if name in _OF_PHASE else value for name, value in values.items()}
 
     def _without_standing(self, axis: dict[str, Any], group: _Group) -> tuple[dict[str, Any], tuple[int, ...]]:
-        """An axis without its phases that last 0 s, as of two rows with one stamp, and the numbers of its rows."""
+        """An axis without its phases of 0 s, as from two rows with one time stamp, and the numbers of its rows."""
         durations = axis.get(_DURATION, ())
         places = [k for k, duration in enumerate(durations) if duration != 0]
         if not places or len(places) == len(durations):
@@ -346,12 +349,12 @@ _STOP = "emergency_stop.torque_Nm"
 
 
 def _stands_first(cells: Sequence[str]) -> bool:
-    """True for a cell in the first of several rows alone."""
+    """True where only the first of several cells is filled."""
     return len(cells) > 1 and not is_blank(cells[0]) and all(map(is_blank, cells[1:]))
 
 
 def _listed(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:
-    """Several ratios or sizes in a cell. A comma between digits is a decimal mark, and no ratio has one."""
+    """Several ratios or sizes in a cell. A comma between digits is a decimal mark, although no ratio has decimals."""
     if len(cell) > LONGEST_CELL:
         return [str(cell)]
     parts = [text for part in _BETWEEN.split(_OF_RATIO.sub("", cell).strip("[]")) if (text := part.strip(","))]

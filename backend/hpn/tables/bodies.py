@@ -1,8 +1,9 @@
-"""Body of a table: its rows of numbers below the headings, and the rows that are named like sums or like titles."""
+"""Body of a table: its rows of numbers below the headings, and its rows named like sums or like titles."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from operator import itemgetter
 from typing import NamedTuple
 
 from hpn.tables.cells import LONGEST_CELL, Figure, held_of, is_blank, is_number, moment_of, seconds_between
@@ -11,6 +12,7 @@ from hpn.tables.heads import (
     MOST_COLUMNS,
     REQUIRED,
     Head,
+    Names,
     head_of,
     is_comment,
     numbers_in,
@@ -30,7 +32,7 @@ _FOLLOWS = Pattern("[0-9]{3}([.,][0-9]+)?", LONGEST_CELL)
 
 
 class Labelled(NamedTuple):
-    """A row that its text sets apart from the phases: its number for the user, its cells, and the text."""
+    """A row set apart from the phases by its text: its number for the user, its cells, and the text."""
 
     number: int
     cells: tuple[str, ...]
@@ -39,12 +41,12 @@ class Labelled(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class TableBody:
-    """Rows of numbers with their numbers for the user, the headings above each column, and what was left out.
+    """Rows of numbers with their numbers for the user, the headings above each column, and the rows left out.
 
-    `totals` are rows of numbers by whose names they may be sums, means or extremes of the others, and `titles` rows of
-    one text. Where every row may be a total, they are among the rows as well. Columns that are `dated` had dates with a
-    time of day, and have the seconds since the first; of one that is `scaled`, what a cell shows and what it holds.
-    Rows by whose texts they may be the emergency stop are among the others, with their texts in `stops`.
+    `totals` are rows of numbers whose names may mean sums, means or extremes of the other rows; `titles` are rows of
+    one text. Where every row may be a total, the totals are among the rows as well. Columns that are `dated` had dates
+    with a time of day, and hold seconds since the first date; `scaled` has, by column, the shown and the held number of
+    a cell. Rows whose texts may mean the emergency stop are among the others, with their texts in `stops`.
     """
 
     rows: tuple[tuple[str, ...], ...]
@@ -60,7 +62,7 @@ class TableBody:
 
     @property
     def headed(self) -> bool:
-        """True where anything stands above the numbers."""
+        """True where a text stands above the numbers."""
         return any(self.headings)
 
     @property
@@ -69,32 +71,35 @@ class TableBody:
         return tuple(title for title in self.titles if self.numbers[0] < title.number < self.numbers[-1])
 
     def including(self, more: Iterable[Labelled]) -> "TableBody":
-        """With further rows among the others, in their places."""
-        rows = dict(zip(self.numbers, self.rows, strict=True)) | {each.number: each.cells for each in more}
-        return replace(self, numbers=tuple(sorted(rows)), rows=tuple(rows[number] for number in sorted(rows)))
+        """The body with further rows in their places; several of these may have one number."""
+        there = set(self.numbers)
+        further = [(each.number, each.cells) for each in more if each.number not in there]
+        pairs = sorted([*zip(self.numbers, self.rows, strict=True), *further], key=itemgetter(0))
+        return replace(self, numbers=tuple(n for n, _ in pairs), rows=tuple(row for _, row in pairs))
 
     def of(self, places: Sequence[int]) -> "TableBody":
         """Some of the rows by their places, in this order."""
         return replace(self, numbers=tuple(self.numbers[k] for k in places), rows=tuple(self.rows[k] for k in places))
 
     def above(self, number: int) -> "TableBody":
-        """The rows above one."""
+        """The rows above a row number."""
         count = sum(each < number for each in self.numbers)
         totals = tuple(total for total in self.totals if total.number < number)
         return replace(self, numbers=self.numbers[:count], rows=self.rows[:count], totals=totals)
 
 
-def body_of(grid: Grid, scales: str = "", *, named_rows: bool = False) -> TableBody:
+def body_of(grid: Grid, scales: str = "", *, named_in: Names | None = None) -> TableBody:
     """Rows of a table, the right way round; raises RefusedError where they make no table.
 
-    `scales` says which of two numbers counts where a format of a workbook shows another than the cell holds.
+    `scales` tells which of two numbers counts where a workbook's format shows another number than the cell holds;
+    `named_in` is that of `head_of`.
     """
     grid = upright(uncommented(grid))
     if grid.turned and grid.separator == "blank":
         _require_ungrouped(grid)
     if grid.width > MOST_COLUMNS:
         raise RefusedError(N_("there are more than {most} columns"), most=MOST_COLUMNS)
-    head = head_of(grid, named_rows=named_rows)
+    head = head_of(grid, named_in=named_in)
     if head.end == len(grid.rows):
         raise _no_numbers(grid)
     apart = _rows_apart(grid, head)
@@ -124,7 +129,7 @@ def body_of(grid: Grid, scales: str = "", *, named_rows: bool = False) -> TableB
 
 
 def _rows_apart(grid: Grid, head: Head) -> set[int]:
-    """Numbers of rows below the header that are none of the table: comments, the header once more, lines of text."""
+    """Numbers of rows below the header that are not part of the table: comments, repeated headers, lines of text."""
     apart = set()
     for k in range(head.end, len(grid.rows)):
         row = grid.rows[k]
@@ -137,26 +142,26 @@ def _rows_apart(grid: Grid, head: Head) -> set[int]:
 
 
 def _no_numbers(grid: Grid) -> RefusedError:
-    """Error for no row of numbers: it names a cell that may be meant as one, where a row has several."""
+    """Error for a table without a row of numbers; names a misread number where a row has several cells with digits."""
     for number, row in zip(grid.numbers, grid.rows, strict=True):
-        meant = [cell for cell in row if any(map(str.isdigit, cell)) and not heading_of(cell).kind]
-        wrong = next((cell for cell in meant if not is_number(cell)), "")
-        if len(meant) >= 2 and sum(map(bool, row)) < len(REQUIRED):
+        numbers = [cell for cell in row if any(map(str.isdigit, cell)) and not heading_of(cell).kind]
+        wrong = next((cell for cell in numbers if not is_number(cell)), "")
+        if len(numbers) >= 2 and sum(map(bool, row)) < len(REQUIRED):
             return RefusedError(TOO_FEW, row=number, cells=sum(map(bool, row)))
-        if len(meant) >= 2 and wrong:
+        if len(numbers) >= 2 and wrong:
             return RefusedError(N_("row {row}: {cell} is not a number"), row=number, cell=wrong[:40])
     return RefusedError(N_("there is a header, but no row of numbers below it"))
 
 
 def _require_undivided(grid: Grid, number: int, cells: Sequence[str]) -> None:
-    """Raise RefusedError where a blank between digits may end a column as well: `1 100,1 100,0` with decimal commas."""
+    """Raise RefusedError for a blank between digits that may also end a column: `1 100,1 100,0` with decimal commas."""
     for cell in cells if grid.separator == "comma" else ():
         if _DIVIDED.search(cell) and is_number(cell):
             raise RefusedError(DIVIDED, row=number, cell=cell[:40])
 
 
 def _require_ungrouped(grid: Grid) -> None:
-    """Raise RefusedError where every line of a turned table may have thousands in it that a blank parts: `1 1 000`."""
+    """Raise RefusedError where every line of a turned table may have a blank between thousands: `1 1 000`."""
     lines = [line for line in grid.transposed().rows if numbers_in(line)]
     pairs = [
         next((f"{a} {b}" for a, b in pairwise(line) if _LEADS.fullmatch(a) and _FOLLOWS.fullmatch(b)), None)
@@ -167,7 +172,7 @@ def _require_ungrouped(grid: Grid) -> None:
 
 
 class _Settled:
-    """Rows of cells that each hold one number: of a date its seconds, of a number in thousands the one that counts."""
+    """Rows of cells with one number each: a date as its seconds, a number shown in thousands as the one that counts."""
 
     def __init__(self, rows: Sequence[tuple[str, ...]], headings: Sequence[Sequence[str]], scales: str) -> None:
         self.rows, self.dated, self.scaled = rows, frozenset[int](), dict[int, tuple[str, str]]()
@@ -191,7 +196,7 @@ class _Settled:
 
 
 def _seconds_since(cells: Sequence[str]) -> list[str]:
-    """A column of moments as seconds since the first of them; empty where there are none, or numbers beside them."""
+    """A column of moments as seconds since the first; empty without moments, or with numbers beside them."""
     moments = [moment_of(cell) for cell in cells]
     if not any(moment is not None for moment in moments) or any(map(is_number, cells)):
         return []

@@ -1,4 +1,4 @@
-"""Numbers by size as people type them: `21` for all sizes, or `20A: 21; 32A: 30; others: 18`."""
+"""Numbers by size as typed text: `21` for all sizes, or `20A: 21; 32A: 30; others: 18`."""
 
 import json
 from collections.abc import Callable, Iterable
@@ -11,14 +11,14 @@ from hpn.words.terms import FOR_OTHERS
 
 
 class Part(NamedTuple):
-    """A number as a text, and the size that it is for as it is written; blank where it is for all others."""
+    """A number as a text, and its size as written; the size is blank for all others."""
 
     size: str
     number: str
 
     @property
     def place(self) -> str:
-        """Size in the handbook's spelling, or `others`; anything else as it is written."""
+        """Size in the handbook's spelling, or `others`; anything else as written."""
         is_others = not self.size or self.size.casefold() in _words_for_others()
         return OTHERS if is_others else str(canonical_place(self.size))
 
@@ -29,13 +29,13 @@ class BySize(str):
     parts: tuple[Part, ...]
 
     def __new__(cls, parts: Iterable[Part]) -> "BySize":
-        """A text that behaves as its parts in a link would."""
+        """A text equal to its parts as a link writes them."""
         own = tuple(parts)
         text = super().__new__(cls, ";".join(f"{size}:{number}" if size else number for size, number in own))
         text.parts = own
         return text
 
-    def shown(self, numbers: Iterable[str], reader: Reader) -> str:
+    def for_field(self, numbers: Iterable[str], reader: Reader) -> str:
         """The text for a field of a reader, with numbers as the reader writes them."""
         pairs = list(zip(self.parts, numbers, strict=True))
         if len(pairs) == 1 and not self.parts[0].size:
@@ -45,7 +45,7 @@ class BySize(str):
 
 
 def by_size(text: str) -> BySize:
-    """Parts of a text, which a semicolon divides; the size of each stands before a colon."""
+    """Parts of a text between semicolons; the size of each stands before a colon."""
     if isinstance(text, BySize):
         return text
     parts = []
@@ -59,11 +59,11 @@ def by_size(text: str) -> BySize:
 
 
 def numbers_by_size(cell: str, number_of: Callable[[str], float | None]) -> dict[str, float] | None:
-    """Numbers by size in a cell, typed or as an object of JSON, each as `read` reads it; None for any other cell."""
+    """Numbers by size in a cell, typed or as an object of JSON, read by `number_of`; None for any other cell."""
     parts = by_size(cell).parts
     if cell.lstrip().startswith("{"):
         try:
-            pairs = json.loads(cell, object_pairs_hook=list)  # a size given twice is none of both
+            pairs = json.loads(cell, object_pairs_hook=list)  # neither of two numbers for one size counts
         except (ValueError, RecursionError):
             return None
         parts = tuple(Part(size, str(number)) for size, number in pairs)

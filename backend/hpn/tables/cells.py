@@ -1,7 +1,7 @@
-"""Cells of a table: blank ones, numbers, perhaps with a unit, under either decimal mark, and times.
+"""Cells of a table: blanks, numbers under either decimal mark, perhaps with a unit, and times.
 
 A mark between thousands stands before groups of exactly three digits, is the same throughout a number, and never
-follows a leading zero: `0,250` is a quarter under every reading. `0:00:30` and `PT30S` last so long, and
+follows a leading zero: `0,250` is a quarter under every reading. `0:00:30` and `PT30S` are durations, and
 `2026-03-01T08:00:30` is a moment.
 """
 
@@ -20,16 +20,16 @@ Decimal = Literal[".", ","]
 DECIMALS: tuple[Decimal, ...] = (".", ",")
 
 DASHES = str.maketrans(dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{NON-BREAKING HYPHEN}", "-"))
-"""Signs that stand for a minus in documents."""
+"""Signs used as a minus in documents."""
 
 BLANKS = " \u00a0\u2007\u2008\u2009\u202f"
-"""Blank, no-break, figure, punctuation, thin and narrow no-break space: each may stand between thousands."""
+"""Blank, no-break, figure, punctuation, thin and narrow no-break space: any of them may separate thousands."""
 
 UNSEEN = "\u00ad\u200b\u200c\u200d\u200e\u200f\u2060\ufeff"
 """Characters without width, which come with cells copied from documents."""
 
 LONGEST_CELL = 400
-"""Characters of a cell that could still be a number: written out, the largest has some 310 digits."""
+"""Characters of the longest number: written out, the largest float has some 310 digits."""
 
 _EXPONENT = r"(?:[eE][+-]?[0-9]{1,3})?"
 _NUMBER = {
@@ -49,30 +49,30 @@ _WITH_UNIT = Pattern(
 """A number and its unit: letters, or one divided by something."""
 
 THOUSANDS = "÷"
-"""Stands before what a format divides a number by, where nothing says the unit of what it shows."""
+"""Prefix of a number format's divisor where the format names no unit."""
 
 PERCENT = "%"
 _OF_PHASES = ("torque", "speed", "time", "force")
 _NOTHING = ("", "-", "–", "—", "\N{MINUS SIGN}", "\N{NON-BREAKING HYPHEN}")
 _HELD_AS_TEXT = Pattern(r"=\"(?P<formula>[^\"]*)\"|'(?P<text>[-+\N{MINUS SIGN}]?(?!0[0-9])[0-9].*)", LONGEST_CELL)
-"""A number that spreadsheet programs hold as a text: `="40"`, and `'40` but no `'040`."""
+"""A number that spreadsheet programs hold as a text: `="40"` and `'40`, but not `'040`."""
 
 _QUOTED = Pattern(
     r"\"(?P<a>[^\"]+)\"|'(?P<b>[^']+)'|[“„](?P<c>[^“”„]+)[”“]|[‘‚](?P<d>[^‘’‚]+)[’‘]|«(?P<e>[^«»]+)»", LONGEST_CELL
 )
-"""A cell in quotes, as programs write it whose separator is none that quotes belong to."""
+"""A cell in quotes, from programs whose separator needs no quotes."""
 
 _FULL_WIDTH = str.maketrans({chr(ord(sign) + 0xFEE0): sign for sign in "0123456789.,+-"})
 
 
 class Figure(str):
-    """A number that a workbook holds as such: in plain notation, with the unit of its format behind a blank."""
+    """A number that a workbook holds as a number: in plain notation, with the unit of its format behind a blank."""
 
     __slots__ = ()
 
 
 class Merged(str):
-    """A cell that a merged one with a number covers, by the name of both, `D2:D4`: the number may be of either."""
+    """A cell covered by a merged number, with the name of the merged cells, `D2:D4`: the number may belong to each."""
 
     __slots__ = ()
 
@@ -84,7 +84,7 @@ class Spanning(str):
 
 
 def spanned(cell: str) -> int:
-    """Columns that a merged text covers; 0 for any other, of which nothing says where it ends."""
+    """Columns that a merged text covers; 0 for any other cell, whose extent is unknown."""
     return cell.columns if isinstance(cell, Spanning) else 0
 
 
@@ -96,7 +96,7 @@ class CellNumber(NamedTuple):
 
 
 def tidy(cell: str) -> str:
-    """A cell without what can't be seen at its ends; a number that is held as a text, or in full width, as a number."""
+    """A cell without invisible characters at its ends; a number held as a text or in full width becomes a plain one."""
     cell = cell.strip().strip(UNSEEN).strip()
     if match := _QUOTED.fullmatch(cell):
         cell = match[match.lastgroup or 0].strip()
@@ -107,12 +107,12 @@ def tidy(cell: str) -> str:
 
 
 def is_blank(cell: str) -> bool:
-    """True for a cell that is empty, or a dash."""
+    """True for an empty cell or a dash."""
     return cell in _NOTHING
 
 
 def held_of(cell: str) -> tuple[str, str] | None:
-    """Number that a workbook shows in thousands without saying so, and the one that it holds: 40 of `40000 ÷1000`."""
+    """Shown and held number of a cell shown in thousands without a unit: 40 and 40000 of `40000 ÷1000`."""
     number, _, thousands = cell.partition(f" {THOUSANDS}") if isinstance(cell, Figure) else ("", "", "")
     if not thousands:
         return None
@@ -121,15 +121,15 @@ def held_of(cell: str) -> tuple[str, str] | None:
 
 
 def split_unit(text: str) -> tuple[str, str]:
-    """Number and unit of a text such as `40 Nm`; the unit is blank where there is none."""
+    """Number and unit of a text such as `40 Nm`; the unit is blank if there is none."""
     match = _WITH_UNIT.fullmatch(text)
     return (match["number"], (match["per"] or match["unit"]).strip()) if match else (text, "")
 
 
 def entry(cell: str, decimal: Decimal, *, any_unit: bool = False) -> CellNumber | None:
-    """A cell as a number under a decimal mark; None where it is none.
+    """A cell as a number under a decimal mark; None for any other cell.
 
-    Its unit is one that a phase has, or any that is known, a percentage among them.
+    Its unit must be a unit of phases; with `any_unit` it may be any known unit, or a percentage.
     """
     if isinstance(cell, Figure):
         number, _, unit = cell.partition(" ")
@@ -148,13 +148,13 @@ def _entry(cell: str, decimal: Decimal, any_unit: bool) -> CellNumber | None:
     written, unit = (cell[:-1].rstrip(), PERCENT) if cell.endswith(PERCENT) else split_unit(cell)
     codes = codes_for(unit)
     known = unit == PERCENT or bool(codes) if any_unit else any(QUANTITY_OF[code] in _OF_PHASES for code in codes)
-    # `1/min` is a unit, and no number of its own; `1'` is no phase's.
+    # `1/min` is a unit without a number; `1'` is no unit of a phase.
     number = plain_number(written, decimal) if known and not codes_for(cell) else None
     return None if number is None else CellNumber(number, unit)
 
 
 def plain_number(text: str, decimal: Decimal) -> str | None:
-    """A number with a point as decimal mark and nothing between thousands; None where it is no number."""
+    """A number with a decimal point and without marks between thousands; None for any other text."""
     text = text.translate(DASHES)
     match = _NUMBER[decimal].fullmatch(text)
     if match is None:
@@ -170,12 +170,12 @@ def written(number: float) -> str:
 
 
 def is_meant_as_number(cell: str) -> bool:
-    """True for a number, and for what stands in place of one: a formula, or a part of merged cells with a number."""
+    """True for a number or a stand-in for one: a formula, or a cell below a merged number."""
     return cell.startswith("=") or isinstance(cell, Merged) or is_number(cell)
 
 
 def is_number(cell: str) -> bool:
-    """True for a number of a phase under any decimal mark."""
+    """True for a number, or a number with a unit of phases, under either decimal mark."""
     return any(entry(cell, decimal) is not None for decimal in DECIMALS)
 
 
@@ -185,7 +185,7 @@ LONGEST_TIME = 40
 
 _CLOCK = Pattern(r"([0-9]{1,4}):([0-5][0-9]):([0-5][0-9])(?:[.,]([0-9]{1,9}))?", LONGEST_TIME)
 _MINUTES = Pattern(r"()([0-9]{1,3}):([0-5][0-9])[.,]([0-9]{1,9})", LONGEST_TIME)
-"""Minutes, seconds and a fraction: nobody writes one of minutes."""
+"""Minutes, seconds and a fraction: nobody writes fractions of minutes."""
 
 _ISO = Pattern(r"PT(?=[0-9])(?:([0-9]{1,6})H)?(?:([0-9]{1,6})M)?(?:([0-9]{1,6})(?:[.,]([0-9]{1,9}))?S)?", LONGEST_TIME)
 _MOMENT = Pattern(
@@ -194,7 +194,7 @@ _MOMENT = Pattern(
     LONGEST_TIME,
 )
 TIME_FORMAT = Pattern(r"\[?[hH]{1,2}\]?:[mM]{2}:[sS]{2}(?:[.,](?:[0fsS]{1,6}|ms|xxx))?", LONGEST_TIME)
-"""Format in a heading whose times are written as on a clock."""
+"""Format in a heading for times written as on a clock."""
 
 TIME_PARTED = Pattern(r"[0-5]?[0-9]:[0-5][0-9]", LONGEST_TIME)
 """A time of two parts, hours and minutes or minutes and seconds."""
@@ -219,7 +219,7 @@ def _with_fraction(whole: int, fraction: str | None) -> str:
 
 
 def moment_of(cell: str) -> Fraction | None:
-    """Seconds from the year 1970 to a date with a time of day, all digits of its fraction counted; None for no such."""
+    """Seconds from 1970 to a date with a time of day, with all digits of the fraction; None for any other cell."""
     return _moment_of(cell) if len(cell) <= LONGEST_TIME else None
 
 
@@ -236,7 +236,7 @@ def _moment_of(cell: str) -> Fraction | None:
 
 
 def seconds_between(moments: Sequence[Fraction | None], moment: Fraction) -> str:
-    """Seconds from the first of some moments to one, in plain notation."""
+    """Seconds from the first known moment of a column to another one, in plain notation."""
     first = next(each for each in moments if each is not None)
     nanoseconds = round((moment - first) * 10**9)
     sign, (whole, rest) = "-" if nanoseconds < 0 else "", divmod(abs(nanoseconds), 10**9)
@@ -248,7 +248,7 @@ _PLAIN_NUMBER = Pattern(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?", 
 
 
 def harmless(cell: str | None) -> str | None:
-    """A text with an apostrophe before it where it would begin a formula; a number stays one."""
+    """A text with an apostrophe before it where it would be a formula; a number stays as it is."""
     if cell is None or not cell.startswith(BEGINS_A_FORMULA) or _PLAIN_NUMBER.fullmatch(cell):
         return cell
     return f"'{cell}"

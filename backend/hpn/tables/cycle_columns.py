@@ -1,4 +1,4 @@
-"""Columns of a table that is one cycle: by their headings, else by their units or places; one may name the phases."""
+"""Columns of a table with one cycle, by their headings, else by their units or places; one may name the phases."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -15,7 +15,9 @@ from hpn.words.titles import LONGEST_NAME, is_title
 
 
 def columns_of(body: TableBody, choices: Choices, assumed: Collection[str]) -> tuple[Column, ...]:
-    """Columns with the answers about them and with their units; raises RefusedError for less than three of numbers."""
+    """Columns with the answers about them and with their units; raises RefusedError for fewer than three numeric
+    columns.
+    """
     columns = proposed(body, CYCLE)
     if sum(not column.text for column in columns) < len(REQUIRED):
         raise _too_few(body, columns)
@@ -28,9 +30,11 @@ def columns_of(body: TableBody, choices: Choices, assumed: Collection[str]) -> t
 
 
 def _column_of_names(columns: Sequence[Column], body: TableBody) -> Column | None:
-    """Column that names the phases unless somebody says otherwise: the one that this service writes so, one of texts
-    with a heading that says so, else the first of texts, remarks last; most rows have one that may be a name, and not
-    all the same.
+    """Column that names the phases, unless an answer says otherwise; None without one.
+
+    It is the column with this service's own heading, else a column of texts whose heading means a name, else the first
+    column of texts, remarks last. At least half of its cells are filled, all may be names, and they are not all the
+    same.
     """
     candidates = []
     for column in columns:
@@ -46,7 +50,7 @@ def _column_of_names(columns: Sequence[Column], body: TableBody) -> Column | Non
 
 
 def _too_few(body: TableBody, columns: Sequence[Column]) -> RefusedError:
-    """Error for less than three columns of numbers."""
+    """Error for fewer than three columns of numbers."""
     for number, row in zip(body.numbers, body.rows, strict=True):
         wrong = next((cell for cell in row if not is_blank(cell) and not is_number(cell)), None)
         if wrong and len(columns) >= len(REQUIRED):
@@ -58,7 +62,7 @@ def _too_few(body: TableBody, columns: Sequence[Column]) -> RefusedError:
 def _by_place(body: TableBody, columns: Sequence[Column]) -> dict[int, str]:
     """Quantities of columns without a heading: by the units in their cells, else torque, speed, duration in order.
 
-    None for more than three columns, nor where the first may count the phases, or its texts name quantities.
+    Empty for any number of columns but three, where the first may count the phases, or where texts may name quantities.
     """
     numeric = [column.place for column in columns if not column.text]
     inside = {place: units_in(body, place) for place in numeric}
@@ -71,7 +75,7 @@ def _by_place(body: TableBody, columns: Sequence[Column]) -> dict[int, str]:
 
 
 def has_two_ways(body: TableBody) -> bool:
-    """True where a phase can be a row or a column: three rows of as many plain numbers or more, and nothing else."""
+    """True where a phase can be a row or a column: exactly three rows of three or more plain numbers each."""
     places = range(body.grid.width)
     if body.headed or len(body.rows) != len(REQUIRED) or len(places) < len(REQUIRED) or counts(body, 0):
         return False

@@ -1,4 +1,4 @@
-"""A table that is one duty cycle, in whichever way it is written: its columns, its phases, and rows that are none."""
+"""A table with one duty cycle, in any layout: its columns, its phases, and its other rows."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -36,16 +36,16 @@ BLANK = {
 }
 
 MOST_NAMED = 5
-"""Rows named like totals that a question names."""
+"""Rows named like totals that a question lists."""
 
 MOST_TOTALS = 20
-"""Rows named like totals that are compared with the others; of more none is taken for a total."""
+"""Rows named like totals, at most, that are compared with the others; if there are more, none counts as a total."""
 
 THREE_DIGITS = 0.005
 """Relative error of a number rounded to three digits."""
 
 
-class _Found(NamedTuple):
+class _CycleTable(NamedTuple):
     """Reading of the cells by one separator, and its rows."""
 
     table: Table
@@ -53,12 +53,12 @@ class _Found(NamedTuple):
 
     @property
     def difference(self) -> tuple[object, ...]:
-        """The phases, or the rows, in which two readings of one text differ."""
+        """The phases, or else the rows, by which two readings of one text are told apart."""
         return (*self.table.phases, self.table.names) if self.table.whole or not self.rows else self.rows
 
 
 def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)) -> Table:
-    """Reading of a pasted text; raises nothing, `problem` says why there is none."""
+    """Reading of a pasted text; raises nothing, `problem` tells why it can't be read."""
     try:
         return read_grids(grids_of(text), choices, assumed)
     except RefusedError as refused:
@@ -68,7 +68,7 @@ def read_text(text: str, choices: Choices = NO_CHOICES, assumed: Collection[str]
 def read_grids(
     grids: Sequence[Grid], choices: Choices = NO_CHOICES, assumed: Collection[str] = tuple(CYCLE.units)
 ) -> Table:
-    """Reading of the cells of a table, out of those by each separator; raises nothing."""
+    """Reading of a table from its cells by each separator; raises nothing."""
     readings = [_read_grid(grid, choices, assumed) for grid in grids]
     divided = next((table for table, _ in readings if table.problem and table.problem.template == DIVIDED), None)
     if divided:
@@ -96,7 +96,7 @@ def read_grids(
     )
 
 
-def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _Found:
+def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _CycleTable:
     questions = Questions(choices)
     try:
         body = body_of(grid, choices.scales)
@@ -104,8 +104,8 @@ def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _Found
             way = questions.choose(PHASE, Sentence(N_("Is a phase a row or a column?")))
             body = body_of(grid.transposed(), choices.scales) if way == "column" else body
             if not way:
-                said = _CycleInterpreter(body, columns_of(body, choices, assumed), questions).said
-                return _Found(Table(**said, separator=grid.separator), body.rows)
+                facts = _CycleInterpreter(body, columns_of(body, choices, assumed), questions).facts
+                return _CycleTable(Table(**facts, separator=grid.separator), body.rows)
         body = _one_cycle(body, questions)
         if len(body.rows) > MAXIMUM_PHASES:
             raise RefusedError(N_("there are more than {most} rows"), most=MAXIMUM_PHASES)
@@ -113,13 +113,13 @@ def _read_grid(grid: Grid, choices: Choices, assumed: Collection[str]) -> _Found
         if body.totals:
             body = _without_totals(body, columns, questions)
             columns = columns_of(body, choices, assumed)
-        return _Found(_CycleInterpreter(body, columns, questions).table(), body.rows)
+        return _CycleTable(_CycleInterpreter(body, columns, questions).table(), body.rows)
     except RefusedError as refused:
-        return _Found(Table(problem=refused.sentence, separator=grid.separator))
+        return _CycleTable(Table(problem=refused.sentence, separator=grid.separator))
 
 
 def _one_cycle(body: TableBody, questions: Questions) -> TableBody:
-    """A table as far as its rows are one cycle: those below a title may be of another."""
+    """A table down to the end of its first cycle: rows below a title may belong to another."""
     for title in body.parting[:1]:
         template = N_("Row {row}, “{text}”, stands between the phases. Are they one cycle?")
         question = Sentence(template, {"row": title.number, "text": title.text[:40]})
@@ -129,7 +129,7 @@ def _one_cycle(body: TableBody, questions: Questions) -> TableBody:
 
 
 def _without_totals(body: TableBody, columns: tuple[Column, ...], questions: Questions) -> TableBody:
-    """A table without the rows that are totals; of those that are only named so it is asked."""
+    """A table without its totals; the user is asked about rows that only have the name of a total."""
     reading = _CycleInterpreter(body, columns, Questions(questions.answers))
     reading.read_numbers()
     sure = _totals_of(body, reading.used, reading.decimal or DECIMALS[0])
@@ -150,10 +150,10 @@ def _without_totals(body: TableBody, columns: tuple[Column, ...], questions: Que
 
 
 class _CycleInterpreter(Interpreter):
-    """A table on its way to the phases of one cycle: a cell that is no number spoils it."""
+    """Interpreter of a table with one cycle: a cell that is not a number spoils it."""
 
     def table(self) -> Table:
-        """The table with what is to be asked, or with its phases; raises RefusedError."""
+        """The table with its open questions, or with its phases; raises RefusedError."""
         self.ask_columns()
         self.read_numbers()
         self._stand_still()
@@ -165,11 +165,11 @@ class _CycleInterpreter(Interpreter):
         names = next((column.place for column in self.columns if column.role == NAME.role), None)
         texts = () if names is None else tuple(row[names].strip() for row in self.body.rows[: len(phases)])
         grid = self.body.grid
-        said: dict[str, Any] = {**self.said, "separator": grid.separator, "turned": grid.turned}
-        return Table(**said, phases=phases, names=texts, stop_Nm=stop)
+        facts: dict[str, Any] = {**self.facts, "separator": grid.separator, "turned": grid.turned}
+        return Table(**facts, phases=phases, names=texts, stop_Nm=stop)
 
     def _stand_still(self) -> None:
-        """Fill torque and speed of a pause that has a time alone with zeros."""
+        """Fill in zero torque and speed for a pause with only a time."""
         for k, (cells, row) in enumerate(zip(self.body.rows, self.rows, strict=True)):
             roles = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
             if roles == {"t"} and any(map(is_pause, cells)):
@@ -181,7 +181,7 @@ class _CycleInterpreter(Interpreter):
                 )
 
     def _take_stops(self) -> str:
-        """T_k of the rows that are the emergency stop, the largest by magnitude: they are no phases."""
+        """T_k from the rows of the emergency stop, the largest by magnitude; these rows are no phases."""
         stops = [k for k, number in enumerate(self.body.numbers) if number in self.body.stops]
         chosen = self.ask_stop([self.body.numbers[k] for k in stops])
         if not stops or chosen == "phase":
@@ -200,7 +200,7 @@ class _CycleInterpreter(Interpreter):
         return max(torques, key=lambda torque: abs(float(torque)), default="")
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
-        """True unless another column is asked, which may be it."""
+        """True unless a column without a role may hold it."""
         return "" not in roles
 
     def may_go_on(self, going_on: Sequence[bool]) -> bool:
@@ -208,7 +208,7 @@ class _CycleInterpreter(Interpreter):
         return any(going_on)
 
     def mend(self, fall: str) -> None:
-        """Sort the rows by time, or end them where the times first go back."""
+        """Sort the rows by time, or end them where the times first fall."""
         times = [self.seconds(row) or Fraction(0) for row in self.rows]
         places = range(len(times))
         if fall == SORTED:
@@ -226,7 +226,7 @@ class _CycleInterpreter(Interpreter):
         self.body = self.body.of(places)
 
     def require_numbers(self, rows_by_mark: Mapping[Decimal, Sequence[Row]]) -> None:
-        """Raise RefusedError unless all cells that are used are numbers by one decimal mark."""
+        """Raise RefusedError unless all used cells are numbers by one decimal mark."""
         wanted = sum(not is_blank(row[column.place]) for row in self.body.rows for column in self.used)
         if any(sum(cell is not None for row in rows for cell in row) == wanted for rows in rows_by_mark.values()):
             return
@@ -238,7 +238,7 @@ class _CycleInterpreter(Interpreter):
         raise RefusedError(N_("the rows use different decimal marks: use a point or a comma throughout"))
 
     def code(self, number: CellNumber, column: Column) -> str:
-        """Code of the unit that a number is in; raises RefusedError where the column says another, or it is unclear."""
+        """Code of a number's unit; raises RefusedError where the column has another unit, or the unit is ambiguous."""
         code = super().code(number, column)
         if not number.unit:
             return code
@@ -250,12 +250,12 @@ class _CycleInterpreter(Interpreter):
             raise RefusedError(template, cell=cell, name=column.called, **either(codes, number.unit))
         if not code or (headed and code != column.unit):
             template = N_("{cell}: this unit does not fit column {name}; possible: {units}")
-            taken = units.symbol_of_code(column.unit) if headed and column.unit else known_units(column.quantity)
-            raise RefusedError(template, cell=cell, name=column.called, units=taken)
+            possible = units.symbol_of_code(column.unit) if headed and column.unit else known_units(column.quantity)
+            raise RefusedError(template, cell=cell, name=column.called, units=possible)
         return code
 
     def _phase_rows(self, times: str) -> list[Row]:
-        """Rows of phases, each filled; the last one may be the sum of the others, or end the cycle."""
+        """Rows of phases, each filled; the last row may be the sum of the others, or end the cycle."""
         rows = self.rows
         bare = len(rows) > 1 and self._time_alone(rows[-1])
         sums = times == "durations" and self._sums()
@@ -263,7 +263,7 @@ class _CycleInterpreter(Interpreter):
         if bare and sums:
             self.notes.append(skipped(self.body.numbers[-1], " ".join(filter(None, self.body.rows[-1]))))
             rows = rows[:-1]
-        elif sums and not (len(rows) == 2 and rows[0] != rows[1]):  # two that take equally long are no sign of a sum
+        elif sums and not (len(rows) == 2 and rows[0] != rows[1]):  # two equal durations are no sign of a sum
             question = Sentence(N_("The last row takes as long as all others together. What is it?"))
             chosen = self.choose(LAST, question)
             rows, is_open = rows[:-1] if chosen == "sum" else rows, not chosen
@@ -271,7 +271,7 @@ class _CycleInterpreter(Interpreter):
         return rows
 
     def _time_alone(self, row: Row) -> bool:
-        """True where the last row has a time and nothing else."""
+        """True where a row has only a time."""
         roles = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
         return roles == {"t"} and all(is_blank(cell) or is_number(cell) for cell in self.body.rows[-1])
 
@@ -305,7 +305,7 @@ class _CycleInterpreter(Interpreter):
         return tuple(tuple(phase.get(role, "") for role in PHASE_ROLES) for phase in phases)
 
     def _lasting(self, phases: Sequence[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
-        """Phases but for those that last 0 s, as of two rows with one stamp: these are left out with a note."""
+        """Phases without those of 0 s, as from two rows with one time stamp, which are left out with a note."""
         lasting = [float(phase[PHASE_ROLES.index("t")]) for phase in phases]
         standing = [k for k, seconds in enumerate(lasting) if seconds == 0]
         if len(standing) == len(phases):
@@ -317,7 +317,7 @@ class _CycleInterpreter(Interpreter):
 
 
 def _no_number_of(row: int, cell: str, column: Column) -> RefusedError:
-    """Error for a cell that is no number of a column, with what would be: a known unit, a time that is one alone."""
+    """Error for a cell that is not a number of its column, with the accepted forms of a time, or the known units."""
     if column.role == "t" and TIME_PARTED.fullmatch(cell):
         template = N_("row {row}: {cell} may be hours or minutes; write {first} or {second}")
         return RefusedError(template, row=row, cell=cell, first=f"{cell}:00", second=f"0:{cell:0>5}")
@@ -331,7 +331,7 @@ def _no_number_of(row: int, cell: str, column: Column) -> RefusedError:
 
 
 def _totals_of(body: TableBody, used: Sequence[Column], mark: Decimal) -> list[Labelled]:
-    """Rows that are totals of the others in the columns that are used, their numbers read with a decimal mark."""
+    """Rows that are totals of the others in the used columns, read with a decimal mark."""
     named = {total.number for total in body.totals}
     phases = [row for number, row in zip(body.numbers, body.rows, strict=True) if number not in named]
     totals = []
@@ -345,8 +345,8 @@ def _totals_of(body: TableBody, used: Sequence[Column], mark: Decimal) -> list[L
 def _sums_up(total: Labelled, rows: Sequence[Sequence[str]], used: Sequence[Column], mark: Decimal) -> bool:
     """True where all numbers of a row are the sums, the means, the largest or the smallest of other rows.
 
-    Where its own numbers are none with this decimal mark the other counts: a formula without a format stands as 3.75
-    below 0,25.
+    A number that can't be read with this decimal mark is read with the other: a formula without a format appears as
+    3.75 below 0,25.
     """
     columns = []
     for column in used:

@@ -1,7 +1,7 @@
 """From the bytes of a file, or a text, to the cells of its sheets.
 
 A file of kilobytes may expand to gigabytes: a service reads it in a process with limited memory and time. The sizes
-that a file states are checked before it is read, so that most such files get an error message.
+that a file states are checked before reading, so that most such files get an error message.
 """
 
 import base64
@@ -26,18 +26,18 @@ OLD_WORKBOOK = N_("a workbook of this old format can’t be read: save it as XLS
 LINES = N_("objects of JSON are no table of axes: save the table as CSV, XLSX, Parquet or Arrow")
 PARQUET, ARROW, STREAM, GZIP = b"PAR1", b"ARROW1", b"\xff\xff\xff\xff", b"\x1f\x8b"
 MOST_HEAD = 2_000_000
-"""Characters in which the header and the first row of a text stand."""
+"""Characters of a text that are searched for the header and the first row."""
 
 MOST_CELLS_IN_ALL = 4 * MOST_CELLS
-"""Of all sheets, those that fill rows up to their widest included."""
+"""Cells of all sheets, including blank ones that fill rows up to the widest."""
 
 
 @dataclass(frozen=True, slots=True)
 class TableBounds:
-    """Table that is wanted of a file: inputs that its columns may hold, its most rows and its longest text, and those
-    that are taken as they are.
+    """Limits for the table of a file: inputs that its columns may hold, its most rows, its longest text, and the test
+    for tables that are taken unread.
 
-    An object of JSON is an application where no tables are taken as they are.
+    Without that test an object of JSON is an application.
     """
 
     inputs: Inputs
@@ -48,9 +48,10 @@ class TableBounds:
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """Contents of a file: cells of each sheet by each way to part them, or the reason why none can be read.
+    """Contents of a file: cells of each sheet by each possible separator, or the reason why they can't be read.
 
-    Without sheets: `suffix` names the format of a table that is taken as it is, and `is_application` an object of JSON.
+    Without sheets: `suffix` names the format of a table that is taken unread, and `is_application` marks an object of
+    JSON.
     """
 
     sheets: Mapping[str, tuple[Grid, ...] | Sentence] = field(default_factory=dict)
@@ -61,7 +62,7 @@ class Contents:
 
 
 def contents_of(content: bytes | str, wanted: TableBounds) -> Contents:
-    """Contents of a file or a text; raises nothing but MemoryError, `problem` says why it can't be read."""
+    """Contents of a file or a text; raises nothing but MemoryError, `problem` tells why it can't be read."""
     if isinstance(content, str):
         return _of_text(content, wanted)
     try:
@@ -75,7 +76,8 @@ def contents_of(content: bytes | str, wanted: TableBounds) -> Contents:
 
             readers = {PARQUET: records.parquet, ARROW: records.arrow, STREAM: records.arrow_stream}
             reader = next(reader for mark, reader in readers.items() if content.startswith(mark))
-            return _of_rows(*reader(content, wanted.takes))
+            suffix, grid = reader(content, wanted.takes)
+            return Contents({"": (grid,)}) if grid else Contents(suffix=suffix)
         if content.startswith(GZIP):
             return _of_gzip(content, wanted)
         text = tidied(text_of(content))
@@ -85,8 +87,9 @@ def contents_of(content: bytes | str, wanted: TableBounds) -> Contents:
 
 
 def _of_gzip(content: bytes, wanted: TableBounds) -> Contents:
-    """Contents of a CSV file in gzip: no more of it is unpacked than a table may have, which one taken as it is tells
-    by its first lines."""
+    """Contents of a CSV file in gzip, unpacked only up to the longest text of a table; a table that is taken unread is
+    recognised by its first lines.
+    """
     try:
         unpacked = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(content, 4 * wanted.most_characters + 4)
     except zlib.error:
@@ -111,7 +114,7 @@ def _of_text(text: str, wanted: TableBounds) -> Contents:
 
 
 def _phases(text: str, wanted: TableBounds) -> Grid | None:
-    """Table of phases as a list of objects of JSON with plain values; None for any other text."""
+    """Table of phases from a JSON list of objects with plain values; None for any other text."""
     if not text.lstrip().startswith("[") or len(text) > wanted.most_characters:
         return None
     try:
@@ -130,10 +133,6 @@ def _phases(text: str, wanted: TableBounds) -> Grid | None:
 def _figure(number: str) -> str:
     plain = plain_number(number, ".")
     return number if plain is None else Figure(plain)
-
-
-def _of_rows(suffix: str, grid: Grid | None) -> Contents:
-    return Contents({"": (grid,)}) if grid else Contents(suffix=suffix)
 
 
 def _sheets(content: bytes) -> dict[str, tuple[Grid, ...] | Sentence]:
@@ -168,18 +167,18 @@ WRONG_BYTE = N_(
 )
 MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16, whose mark is the beginning of this one
+    (codecs.BOM_UTF32_LE, "utf-32-le"),  # before UTF-16: this mark begins with that of UTF-16
     (codecs.BOM_UTF32_BE, "utf-32-be"),
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-"""Byte order marks, and what each promises of the bytes behind it."""
+"""Byte order marks, and the encoding that each announces for the bytes behind it."""
 
 
 def text_of(content: bytes) -> str:
-    """Text in the encoding that its byte order mark promises, else UTF-8, else Windows-1252 as spreadsheets write CSV.
+    """Text in the encoding of its byte order mark, else UTF-8, else Windows-1252 as spreadsheets write CSV.
 
-    Raises RefusedError, which names the place of a byte that breaks the promise.
+    Raises RefusedError, which names the place of a byte that is invalid in the marked encoding.
     """
     for mark, encoding in MARKS:
         if content.startswith(mark):
@@ -206,7 +205,7 @@ def _marked(content: bytes, encoding: str, mark: int) -> str:
 
 
 def tidied(text: str) -> str:
-    """A text without the mark that may stand at its beginning, its lines ended as elsewhere."""
+    """A text without a leading byte order mark, and with `\n` at the ends of its lines."""
     return text.removeprefix("\ufeff").replace("\r\n", "\n")
 
 
@@ -221,7 +220,7 @@ def packed(content: bytes) -> str:
 
 
 def unpacked(carried: bytes) -> bytes:
-    """The file of such a field; nothing where it is none."""
+    """The file of such a hidden field; empty for an invalid field."""
     with suppress(ValueError, zlib.error):
         unpacking = zlib.decompressobj()
         content = unpacking.decompress(base64.b64decode(carried, validate=True), MOST_CARRIED)

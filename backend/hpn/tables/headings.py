@@ -1,4 +1,4 @@
-"""Headings of a table in several languages: which quantity a column holds, and in which unit."""
+"""Headings of a table in several languages: the quantity of a column, and its unit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ QUANTITIES = {
     **{"FRi": "force", "FAi": "force"},
     **{"Tpk": "torque", "npk": "speed", "Trms": "torque", "Tlo": "torque"},
 }
-"""Link symbols of the columns of the duty table -> what they measure."""
+"""Link symbols of the duty table's columns -> measured quantity."""
 
 INDEX, SUM, UNIT = "index", "sum", "unit"
 LONGEST = 80
 
 LONGEST_WRITTEN = 1000
-"""The same before blanks are taken out of it."""
+"""The same limit before blanks are removed."""
 
 _EXACT = {"T": "T", "n": "n", "t": "t", "ω": "n", "Md": "T", "Δt": "t", "dt": "t", "FR": "FRi", "FA": "FAi"}
 _MEASURED = {
@@ -35,10 +35,10 @@ _MEASURED = {
     "Giri": "n",
     "giri": "n",
 }
-"""Names that mean a quantity only together with a unit of it."""
+"""Names that mean a quantity only beside a unit of it."""
 
 _SYMBOLS = {**_EXACT, **_MEASURED, "Fr": "FRi", "Fa": "FAi", "t2": "t", "ω2": "n"}
-"""Symbols that may stand behind a name, as in `Drehmoment T2 [Nm]`; those of the motor’s side are none."""
+"""Symbols that may stand behind a name, as in `Drehmoment T2 [Nm]`; symbols of the motor’s side are not among them."""
 
 _INSTANTS = (
     "zeitpunkt; instant; timestamp; zeitstempel; uhrzeit; datetime; date time; endzeit; startzeit; end time; "
@@ -46,7 +46,7 @@ _INSTANTS = (
     "horodatage; heure; date/heure; date heure; ora; orario; data/ora; data ora"
 )
 INSTANTS = set(_INSTANTS.split("; "))
-"""Names that mean a point in time, and never how long something lasts."""
+"""Names of a point in time, never of a duration."""
 
 _WORDS = {
     "T": "torque; drehmoment; moment; lastmoment; abtriebsmoment; abtriebsdrehmoment; output torque; load torque; "
@@ -82,7 +82,7 @@ _NAMES = {word.strip(): kind for kind, words in _WORDS.items() for word in words
 DURATIONS = {"duration", "dauer", "zeitdauer", "phasendauer", "durée", "durata", "duración", "varaktighet", "duur"} | {
     *("delta t", "δt", "dt")
 }
-"""Names that mean how long something lasts, and never a point in time."""
+"""Names of a duration, never of a point in time."""
 
 _LARGEST = {"max", "maximum", "maximal", "maximale", "maxi", "massima", "massimo", "peak", "spitze", "crête", "picco"}
 _EFFECTIVE = {"rms", "eff", "effective", "effektiv", "efficace"}
@@ -90,31 +90,34 @@ _QUALIFIED = {
     **{(word, kind): f"{kind}pk" for word in _LARGEST for kind in ("T", "n")},
     **{(word, "T"): "Trms" for word in _EFFECTIVE},
 }
-"""A word before or behind the name of a quantity, and its kind -> what both mean."""
+"""A word before or behind the name of a quantity, and its kind -> meaning of both together."""
 
 QUALIFIERS = {
     *_LARGEST,
     *_EFFECTIVE,
     *("min", "minimum", "mean", "average", "avg", "mittel", "mittelwert", "nominal", "rated", "nenn"),
 }
-"""Names below that of a quantity, which say what of it a column holds."""
+"""Words below the name of a quantity that tell which figure of it a column holds."""
 
 OF_NAMES = {"name", "phase name", "bezeichnung", "benennung", "phasenname", "nom", "nome", "nombre", "namn", "naam"}
-"""Names of a column that names the phases, as any that numbers them may do."""
+"""Headings of a column of phase names; the heading of an index may stand there as well."""
 
 OF_PHASES = {"phase", "step", "schritt", "segment", "abschnitt", "étape", "fase", "steg", "stap", "bewegung", "move"}
-"""Names of a column that numbers or names the phases of an axis, and never the axes."""
+"""Headings of a column with numbers or names of an axis's phases, never of axes."""
 
 OF_REMARKS = {"remark", "remarks", "comment", "note", "notes", "bemerkung", "bemerkungen", "anmerkung", "kommentar"}
-"""Names of a column of texts that names nothing."""
+"""Headings of a column of remarks, which are no names."""
 
 OF_LOAD = {"load", "last", "load cycle", "lastzyklus", "duty cycle", "cycle", "zyklus"}
-"""Names above that of a quantity that change nothing of it."""
+"""Words above the name of a quantity that don't change its meaning."""
 
 ANGULAR = {"ω", "omega", "winkelgeschwindigkeit", "angular velocity", "angular speed"} | {
     *("vitesse angulaire", "velocità angolare"),
 }
 """Names of a speed that is as likely in rad/s as in rpm."""
+
+_RATED = {"M_N", "T_N", "n_N", "P_N"}
+"""Symbols of rated figures, whose index is no unit."""
 
 _SUMS = Pattern(
     r"(?:(?:summe|sum|total|gesamt|insgesamt|kumuliert\w*|kumulativ\w*|kum|cumul\w*|cum|somme|somma|suma|totale|summa)\b"
@@ -144,26 +147,26 @@ _BETWEEN = Pattern(r"\s+in\s+|\s*[/,]\s*|[\s_]+", LONGEST_WRITTEN)
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """Meaning of a heading: the quantity, an index, a sum, a unit alone, or nothing that is known (`kind` blank).
+    """Meaning of a heading: a quantity, an index, a sum, a unit alone, or nothing known (`kind` blank).
 
-    Beside a word of the motor it is `meant` alone: the quantity may be of another shaft than the output.
+    Beside a word of the motor only `likely` is filled: the quantity may belong to another shaft than the output.
     """
 
     kind: str
     unit: str = ""
-    meant: str = ""
+    likely: str = ""
     lasting: bool = False
     angular: bool = False
     instant: bool = False
 
     @property
     def names_quantity(self) -> bool:
-        """True where it names a quantity of a phase, on whichever shaft."""
-        return self.kind in QUANTITIES or bool(self.meant)
+        """True for the name of a phase's quantity, on either shaft."""
+        return self.kind in QUANTITIES or bool(self.likely)
 
 
 def heading_of(cell: str) -> Heading:
-    """Meaning of a cell as a heading; one that is far too long for any is not even cached."""
+    """Meaning of a cell as a heading; a cell too long for a heading is not even cached."""
     return _heading_of(cell) if len(cell) <= LONGEST_WRITTEN else Heading("")
 
 
@@ -184,36 +187,36 @@ def _heading_of(cell: str) -> Heading:
     codes = spellings.codes_for(unit)
     bare = without_index(name) if codes else name
     of_motor = bare != name or is_of_motor(name)
-    kind = meant = _kind(without_motor(bare), unit) if of_motor else _kind(name, unit)
+    kind = likely = _kind(without_motor(bare), unit) if of_motor else _kind(name, unit)
     if kind in QUANTITIES and codes and QUANTITIES[kind] not in {units.QUANTITY_OF[code] for code in codes}:
         return Heading("", unit)
-    kind, meant = (kind, "") if not of_motor or kind == "t" else ("", kind if kind in QUANTITIES else "")
+    kind, likely = (kind, "") if not of_motor or kind == "t" else ("", kind if kind in QUANTITIES else "")
     words = {folded, *map(_folded, name.rpartition(" "))}
     lasting, angular, instant = (not words.isdisjoint(names) for names in (DURATIONS, ANGULAR, INSTANTS))
-    return Heading(kind, unit, meant, lasting, angular, instant)
+    return Heading(kind, unit, likely, lasting, angular, instant)
 
 
 def _unit_alone(text: str) -> str:
-    """The unit that a cell is nothing but, or blank."""
+    """Unit of a cell that is only a unit, else blank."""
     inner = _without_in(_without_in(text).strip("[]()<>{} "))
-    if text == "d":  # rather a symbol of something than days
+    if text == "d":  # more likely a symbol than days
         return ""
     known = inner in spellings.SPELLINGS if len(inner) == 1 else bool(spellings.codes_for(inner))
     return inner if known else ""
 
 
 def _without_in(unit: str) -> str:
-    """A unit without the word “in” before it, which in `in lb` is the inch."""
+    """A unit without the word “in” before it; in `in lb` it is the inch."""
     return unit if spellings.codes_for(unit) else unit.removeprefix("in ")
 
 
 def parts_of(text: str) -> tuple[str, str]:
     """Name and unit of `Drehzahl [1/min]`, `Drehzahl in 1/min`, `Drehzahl_1/min`, `n / min-1`.
 
-    What else stands in brackets is part of the name: `Speed motor` of `Speed (motor) [rpm]`. A short word in the last
-    of them may be a unit that is not known; one in round brackets is both, and then both are asked.
+    Other text in brackets is part of the name: `Speed motor` of `Speed (motor) [rpm]`. A short word in the last
+    brackets may be an unknown unit; in round brackets it is part of the name as well, and the user is asked about both.
     """
-    if len(text) > LONGEST_WRITTEN or _kind(text, ""):
+    if len(text) > LONGEST_WRITTEN or _kind(text, "") or text.replace(" ", "_") in _RATED:
         return text, ""
     parts = _bracketed(text)
     inside = [k for k, (bracket, _) in enumerate(parts) if bracket]
@@ -231,7 +234,7 @@ def parts_of(text: str) -> tuple[str, str]:
 
 
 def _bracketed(text: str) -> list[tuple[str, str]]:
-    """Parts of a text outside and inside of its outer brackets, each with the bracket that it stands in."""
+    """Parts of a text outside and inside its outer brackets, each with its bracket."""
     parts, begin, depth, bracket = list[tuple[str, str]](), 0, 0, ""
     for k, sign in enumerate(text):
         opens, closes = sign in "[(<{", sign in "])>}" and depth > 0
@@ -243,7 +246,7 @@ def _bracketed(text: str) -> list[tuple[str, str]]:
 
 
 def _joined(parts: Sequence[tuple[str, str]], without: int | None = None) -> str:
-    """Name of the parts of a text but for one, and for brackets that say nothing."""
+    """Name from the parts of a text, without one of them and without empty brackets."""
     others = [part for k, (bracket, part) in enumerate(parts) if k != without and not (bracket and is_blank(part))]
     return " ".join(" ".join(others).split()).strip(" ,/")
 
@@ -253,7 +256,7 @@ def _is_unit(text: str) -> bool:
 
 
 def _may_be_unit(text: str) -> bool:
-    """True for a short word or a sign, of no meaning beside a name."""
+    """True for a short word or a sign that has no meaning beside a name."""
     known = is_qualifier(text) or is_of_motor(text) or not without_output(text) or text in _SYMBOLS
     return (
         not known and not _SUMS.fullmatch(_folded(text)) and " " not in text and (len(text) < 6 or not text.isalpha())
@@ -273,12 +276,12 @@ def _kind(name: str, unit: str) -> str:
     if (of_output := without_output(name)) != name.strip() and of_output:
         return _kind(of_output, unit)
     word, _, symbol = name.strip().rpartition(" ")
-    meant = _NAMES.get(_folded(word), "")
-    return meant if meant and _SYMBOLS.get(symbol) == meant else ""
+    kind = _NAMES.get(_folded(word), "")
+    return kind if kind and _SYMBOLS.get(symbol) == kind else ""
 
 
 def _qualified(folded: str) -> str:
-    """Largest or effective value of the quantity that the other words name: `torque max`, `vitesse maximale`."""
+    """Largest or effective value of the quantity in the other words: `torque max`, `vitesse maximale`."""
     first, _, behind = folded.partition(" ")
     before, _, last = folded.rpartition(" ")
     ways = ((first, _NAMES.get(behind)), (last, _NAMES.get(before)))
@@ -291,16 +294,16 @@ def _folded(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Over:
-    """Meaning of all texts above a column together. A unit outranks no name: beside a name it says the unit alone.
+    """Meaning of all texts above a column together. A name outranks a unit, which then is only the unit.
 
-    `kind` is blank where nothing is known, or two things; `name` is what the column is called without its units. Beside
-    a word of the motor the kind is `meant` alone.
+    `kind` is blank for no known meaning, or for two; `name` is the column's name without its units. Beside a word of
+    the motor only `likely` is filled.
     """
 
     kind: str
     name: str
     units: frozenset[str]
-    meant: str = ""
+    likely: str = ""
     of_motor: bool = False
     lasting: bool = False
     angular: bool = False
@@ -308,12 +311,12 @@ class Over:
 
     @property
     def may_be_time(self) -> bool:
-        """True for a time, and for a column without a name."""
+        """True for a time, or a column without a name."""
         return self.kind == "t" or not self.name
 
     @property
     def codes(self) -> frozenset[str]:
-        """Codes that its units may stand for."""
+        """Codes of all meanings of its units."""
         return frozenset(code for unit in self.units for code in spellings.codes_for(unit))
 
 
@@ -323,18 +326,18 @@ def heading_over(texts: Sequence[str]) -> Over:
     measured = frozenset(each.unit for each in meanings) - {""}
     names = [text for text, each in zip(texts, meanings, strict=True) if each.kind != UNIT]
     if len(names) < 2:
-        kind, meant = next(((each.kind, each.meant) for each in meanings if each.kind != UNIT), ("", ""))
+        kind, likely = next(((each.kind, each.likely) for each in meanings if each.kind != UNIT), ("", ""))
         headings, name = meanings, names[0] if names else ""
     else:
         headings, name = _together(names)
-        kind, meant = headings[0].kind, headings[0].meant
+        kind, likely = headings[0].kind, headings[0].likely
         measured |= {each.unit for each in headings} - {""}
     return Over(
         kind,
         name,
         measured,
-        meant,
-        bool(meant) or any(is_of_motor(parts_of(" ".join(text.split()))[0]) for text in names),
+        likely,
+        bool(likely) or any(is_of_motor(parts_of(" ".join(text.split()))[0]) for text in names),
         lasting=any(each.lasting for each in headings),
         angular=any(each.angular for each in headings),
         instant=any(each.instant for each in headings),
@@ -342,11 +345,11 @@ def heading_over(texts: Sequence[str]) -> Over:
 
 
 def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
-    """Headings that names above one another make, read downwards or upwards, and the name that they make."""
+    """Headings from the names above one another, read downwards or upwards, and the name they form."""
     bare = [parts_of(" ".join(name.split()))[0] for name in names]
     bare = [name for name in bare if _folded(name) not in OF_LOAD and without_output(name)] or bare
     for name in (" ".join(bare), " ".join(reversed(bare))):
-        if (whole := heading_of(name)).kind or whole.meant:
+        if (whole := heading_of(name)).kind or whole.likely:
             return [whole], name
     each = [heading_of(name) for name in bare]
     same = len({heading.kind for heading in each}) == 1
@@ -354,12 +357,12 @@ def _together(names: Sequence[str]) -> tuple[list[Heading], str]:
 
 
 def is_qualifier(cell: str) -> bool:
-    """True for a word that says of a quantity above it which figure of it a column holds."""
+    """True for a word that tells which figure of the quantity above it a column holds."""
     return len(cell) <= LONGEST and _folded(cell.strip("[]()")) in QUALIFIERS
 
 
 def is_name(cell: str) -> bool:
-    """True for a heading of names: of texts that say what each row is."""
+    """True for a heading of names, which are texts that identify each row."""
     return len(cell) <= LONGEST and (_folded(cell) in OF_NAMES or heading_of(cell).kind == INDEX)
 
 

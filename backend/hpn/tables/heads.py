@@ -1,30 +1,31 @@
-"""Head of a table: which of its rows name the columns, which say their units, and what stands above and is skipped."""
+"""Head of a table: rows that name the columns, rows of their units, and skipped rows above."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from hpn.tables.cells import is_blank, is_meant_as_number, spanned
+from hpn.tables.factors import has_factors
 from hpn.tables.headings import LONGEST_WRITTEN, QUANTITIES, UNIT, heading_of, is_qualifier, quantities_of
 from hpn.tables.shafts import is_of_motor
 from hpn.tables.sheets import MOST_HEAD_ROWS, Grid, RefusedError
 from hpn.words.patterns import Pattern
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, first_of
 
 REQUIRED = ("T", "n", "t")
 """Quantities without which there is no phase."""
 
 HEAD_ROWS, HEAD_CELLS = MOST_HEAD_ROWS, 4000
-"""Rows among which the header is looked for, and their cells: of a wide table fewer rows."""
+"""Rows that are searched for the header, and their cells: fewer rows of a wide table."""
 
 MOST_ABOVE = 3
 """Rows of names above the lowest: groups of columns, and groups of those."""
 
 MOST_TURNED = 20
-"""Rows of a table whose quantities stand down its side."""
+"""Rows, at most, of a table whose first column names the quantities."""
 
 MOST_COLUMNS = 200
-"""Columns that a table of phases or axes may have, once it has a row for each phase."""
+"""Columns, at most, of a table of phases or axes, after it was turned upright."""
 
 MOST_NAMED = 5
 """Rows that a note names."""
@@ -38,7 +39,9 @@ _MARKED = Pattern(r"#+\s*(?=[^\W\d_])(?!(?:N/A|NV|N/V|[A-ZÄÖÜ0/]+[!?])$)", LO
 
 @dataclass(frozen=True, slots=True)
 class Head:
-    """Texts above each column, the first row below the header, how many rows that has, and notes about skipped rows."""
+    """Texts above each column, the first row below the header, the header's count of rows, and notes about skipped
+    rows.
+    """
 
     headings: tuple[tuple[str, ...], ...]
     end: int
@@ -56,19 +59,18 @@ def skipped(number: int, text: str) -> Sentence:
 
 def left_out(numbers: Sequence[int]) -> Sentence:
     """Note for rows that last 0 s."""
-    listed = ", ".join([*map(str, numbers[:MOST_NAMED]), *(["…"] if len(numbers) > MOST_NAMED else [])])
-    return Sentence(N_("Rows that last 0 s are left out: {rows}."), {"rows": listed})
+    return Sentence(N_("Rows that last 0 s are left out: {rows}."), {"rows": first_of(numbers, MOST_NAMED)})
 
 
 def is_comment(row: Sequence[str]) -> bool:
-    """True for a row that begins with the sign of a comment, and has too few numbers for a phase."""
+    """True for a row that begins with the sign of a comment, and has fewer numbers than a phase."""
     return bool(_MARKED.match(row[0])) and numbers_in(row) < len(REQUIRED)
 
 
 def uncommented(grid: Grid) -> Grid:
-    """A table without the `#` that programs write before a header, in a cell of its own where blanks part the columns.
+    """A table without the `#` that programs write before a header, also as a cell of its own between blanks.
 
-    A `#` above a column of numbers stays: it is the heading of their index.
+    A `#` above a column of numbers stays: it is the heading of an index.
     """
     usual = Counter(reversed(grid.counts)).most_common(1)[0][0] if grid.counts else 0
     rows, counts = list(grid.rows), list(grid.counts)
@@ -100,12 +102,19 @@ def upright(grid: Grid) -> Grid:
     return turned
 
 
-def head_of(grid: Grid, *, named_rows: bool = False) -> Head:
-    """Head of an upright table; raises RefusedError where numbers stand above it.
+Names = Callable[[Sequence[str]], int]
+"""Function that counts the figures which some cells name."""
 
-    Where each row begins with a name, one number beside it makes a row below the head.
+
+def head_of(grid: Grid, *, named_in: Names | None = None) -> Head:
+    """Head of an upright table; raises RefusedError for numbers above it.
+
+    Where each row begins with a name, `named_in` counts the figures that a row of headings names, and one number beside
+    the name is enough to end the head.
     """
-    named = [_named(row) for row in grid.rows[: max(1, min(HEAD_ROWS, HEAD_CELLS // grid.width))]]
+    named_rows = named_in is not None
+    top_rows = grid.rows[: max(1, min(HEAD_ROWS, HEAD_CELLS // grid.width))]
+    named = [max(_named(row), named_in(row) if named_in else 0) for row in top_rows]
     if max(named) >= 2:
         bottom = named.index(max(named))
         end = bottom + 1
@@ -119,7 +128,11 @@ def head_of(grid: Grid, *, named_rows: bool = False) -> Head:
         ):
             end += 1
         several = [k for k in range(end) if _filled(grid.rows[k]) >= min(2, grid.width - 1)]
+        if named_rows:  # a row whose only number is beside a name has other cells that can't be read
+            several = [k for k in several if not numbers_in(grid.rows[k])]
         last = bottom = several[-1] if several else -1
+        while last >= 0 and last + 1 < end and has_factors(grid.rows[last + 1]):
+            last += 1
     top = bottom
     while top > max(0, bottom - MOST_ABOVE) and _heads(grid.rows[top - 1], grid.rows[top]):
         top -= 1
@@ -141,19 +154,17 @@ def _notes(grid: Grid, places: Sequence[int]) -> tuple[Sentence, ...]:
 
 def _named(row: Sequence[str], *, with_units: bool = True) -> int:
     """Number of quantities that a row names, by name or by unit."""
-    quantities = set()
-    for cell in row[:MOST_COLUMNS]:
-        heading = heading_of(cell)
-        if heading.names_quantity:
-            quantities.add(heading.kind or heading.meant)
-        elif heading.kind == UNIT and with_units:
-            measured = quantities_of(heading.unit)
-            quantities |= {role for role in REQUIRED if QUANTITIES[role] in measured}
+    headings = [heading_of(cell) for cell in row[:MOST_COLUMNS]]
+    quantities = {heading.kind or heading.likely for heading in headings if heading.names_quantity}
+    known = {QUANTITIES[each] for each in quantities}
+    for heading in headings if with_units else ():
+        measured = quantities_of(heading.unit) - known if heading.kind == UNIT else ()
+        quantities |= {role for role in REQUIRED if QUANTITIES[role] in measured}
     return len(quantities)
 
 
 def numbers_in(row: Sequence[str]) -> int:
-    """Number of cells that are numbers, or stand where numbers do."""
+    """Number of cells with a number or a stand-in for one."""
     return sum(is_meant_as_number(cell) for cell in row)
 
 
@@ -162,14 +173,14 @@ def _filled(row: Sequence[str]) -> int:
 
 
 def _continues(row: Sequence[str]) -> bool:
-    """True for units or further names below those of the quantities; a dash is neither."""
+    """True for a row of units, factors or further names below the quantities; a dash is none of these."""
     filled = [cell for cell in row if not is_blank(cell)]
-    said = sum(heading_of(cell).kind in (*QUANTITIES, UNIT) for cell in filled)
-    return bool(filled) and said >= min(2, len(filled))
+    count = sum(heading_of(cell).kind in (*QUANTITIES, UNIT) for cell in filled)
+    return bool(filled) and (count >= min(2, len(filled)) or has_factors(row))
 
 
 def _qualifies(row: Sequence[str], above: Sequence[str]) -> bool:
-    """True for a row that says which figure of the quantities above a column holds: `max` below `Torque`."""
+    """True for a row that tells which figure of the quantities above it a column holds: `max` below `Torque`."""
     filled = [(k, cell) for k, cell in enumerate(row) if not is_blank(cell)]
     words = [k for k, cell in filled if is_qualifier(cell)]
     others = [cell for k, cell in filled if k not in words]
@@ -180,7 +191,9 @@ def _qualifies(row: Sequence[str], above: Sequence[str]) -> bool:
 
 
 def _heads(row: Sequence[str], below: Sequence[str]) -> bool:
-    """True for a row of names above a row of the header, which are no title and no pair such as `Project;Axis 7`."""
+    """True for a row of names or factors above a header row, but not for a title or a pair such as `Project;Axis 7`."""
+    if has_factors(row):
+        return True
     filled = [(k, cell) for k, cell in enumerate(row) if not is_blank(cell)]
     if any(is_meant_as_number(cell) or cell[0].isdigit() or cell[-1] == ":" for _, cell in filled):
         return False
@@ -196,9 +209,9 @@ def _heads(row: Sequence[str], below: Sequence[str]) -> bool:
 
 
 def _is_group(place: int, cell: str, below: Sequence[str]) -> bool:
-    """True for the only name in its row where it belongs to columns, and is no title.
+    """True for the only name in its row if it is a heading of columns rather than a title.
 
-    Such is a name of the motor, and one over some of the columns: merged, or behind the first with two below it.
+    That is a name of the motor, or a name over some of the columns: merged, or behind the first with two below it.
     """
     named = [k for k, under in enumerate(below) if not is_blank(under)]
     over = [k for k in named if place <= k < place + spanned(cell)]
@@ -212,7 +225,7 @@ def _is_group(place: int, cell: str, below: Sequence[str]) -> bool:
 def _headings(head: Sequence[Sequence[str]], width: int) -> tuple[tuple[str, ...], ...]:
     """Texts above each column, from the top; a name over several columns is above each of them.
 
-    A spreadsheet writes such a name into the first of its columns alone. A time is one of no shaft: it ends the name's
+    A spreadsheet writes such a name only into the first of its columns. A time belongs to no shaft: it ends the name's
     reach.
     """
     headings = [list[str]() for _ in range(width)]

@@ -1,7 +1,7 @@
-"""Inputs that the columns of a table may hold, and the names by which a heading calls them.
+"""Inputs that the columns of a table may hold, and their names in headings.
 
-A table of the nine quantities of a phase is one duty cycle. Where a column may name the axis, it has many: beside the
-phases it may have a column for every other input of an application.
+A table without a column of axes is one duty cycle and has the nine quantities of a phase. A table with one has many
+cycles, and beside the phases may have a column for every other input of an application.
 """
 
 from collections.abc import Mapping, Sequence
@@ -37,18 +37,20 @@ FURTHER = {
     "ta": "ambient, umgebungstemperatur, température ambiante, temperatura ambiente",
     "fw": "betriebsfaktor",
 }
-"""Further names by role. One that fits two inputs, such as “life” or “motor torque”, is in none: it is asked for."""
+"""Further names by role. A name that fits two inputs, such as “life” or “motor torque”, is missing here: the user is
+asked.
+"""
 
 _OF_STOP = "emergency stop, e stop, estop, not halt, nothalt, not aus, notaus, not stopp"
 _MEASURED = dict.fromkeys(_OF_STOP.split(", "), "Tk")
-"""Names that mean an input only together with a unit of it."""
+"""Names that mean an input only beside a unit of that input."""
 
 
 @dataclass(frozen=True)
 class Input:
     """An input that a column may hold: its role, which is its symbol in links, and its place in an application.
 
-    The place is the name of its column in the tables of `hpn fleet`, which ends in its unit.
+    The place is its column's name in the tables of `hpn fleet`, which ends in the unit.
     """
 
     role: str
@@ -64,13 +66,13 @@ class Input:
 
     @cached_property
     def quantity(self) -> str:
-        """Quantity that its unit measures, blank for a pure number or a text, and where there is one unit alone."""
+        """Quantity that its unit measures; blank for a pure number, a text, or an input with one possible unit."""
         return units.quantity_of(self.unit)
 
     @property
     def is_number(self) -> bool:
         """True where its cells hold one number each."""
-        return self.kind != "text" and not self.many
+        return self.kind not in ("text", "curve") and not self.many
 
 
 _OF_PHASE = {
@@ -87,7 +89,7 @@ QUANTITY = Input("qty", "quantity", Named(N_("Number of such axes")), "whole")
 
 
 class Inputs:
-    """Inputs by role, and the names of those that are none of a phase."""
+    """Inputs by role, and the names of the inputs that don't belong to a phase."""
 
     def __init__(self, *further: Input) -> None:
         of_axis = (Input(AXIS, AXIS, Named(N_("Axis")), "text"), QUANTITY) if further else ()
@@ -100,22 +102,22 @@ class Inputs:
         """Suffixes of the units of all inputs."""
         return {each.unit for each in self.by_role.values()} - {""}
 
-    def kind_of(self, headings: Sequence[str], said: Over) -> str:
-        """Role of a column by the texts above it, else the quantity or the index that they name; blank for neither."""
-        return self.role_over(headings, said) or said.kind
+    def kind_of(self, headings: Sequence[str], over: Over) -> str:
+        """Role of a column by the texts above it, else the quantity or index that they name, else blank."""
+        return self.role_over(headings, over) or over.kind
 
-    def role_over(self, headings: Sequence[str], said: Over) -> str:
-        """Role by the name of an input that all texts above a column make together, or by the same name in each."""
+    def role_over(self, headings: Sequence[str], over: Over) -> str:
+        """Role by an input's name that all texts above a column form together, or that each of them is."""
         if not self.has_axes:
             return ""
-        roles = {role for text in headings if (role := self._role_of(text) or self._measured(text, said))}
+        roles = {role for text in headings if (role := self._role_of(text) or self._measured(text, over))}
         names = [text for text in headings if heading_of(text).kind != UNIT]
         if len(names) > 1:
-            roles = {role} if (role := self._role_of(said.name)) else roles if len(roles) == len(names) == 1 else set()
+            roles = {role} if (role := self._role_of(over.name)) else roles if len(roles) == len(names) == 1 else set()
         return roles.pop() if len(roles) == 1 else ""
 
     def _role_of(self, heading: str) -> str:
-        """Role by one of the names of an input, with or without a unit behind it."""
+        """Role by a name of an input, with or without a unit behind it."""
         if len(heading) > LONGEST:
             return ""
         name = parts_of(heading)[0]
@@ -124,10 +126,10 @@ class Inputs:
         with_symbol = role if role and symbol in (role, self.by_role[role].named.symbol) else ""
         return self._roles.get(_folded(heading)) or self._roles.get(_folded(name)) or with_symbol
 
-    def _measured(self, heading: str, said: Over) -> str:
-        """Role by a name that counts beside a unit of its input alone."""
+    def _measured(self, heading: str, over: Over) -> str:
+        """Role by a name that counts only beside a unit of its input."""
         role = _MEASURED.get(_folded(parts_of(heading)[0]), "") if len(heading) <= LONGEST else ""
-        measured = {units.QUANTITY_OF[code] for code in said.codes}
+        measured = {units.QUANTITY_OF[code] for code in over.codes}
         return role if role and measured == {self.by_role[role].quantity} else ""
 
     @cached_property
@@ -145,7 +147,7 @@ class Inputs:
 
 
 CYCLE = Inputs()
-"""Of a table that is one duty cycle."""
+"""Inputs of a table with one duty cycle."""
 
 
 def _folded(text: str) -> str:

@@ -1,8 +1,7 @@
-"""From the columns of a table to numbers: what is asked on the way, and what is said about it.
+"""From the columns of a table to numbers, with the questions and notes on the way.
 
-A number is never silently another number: what a table says in one way alone is read so and shown; where it can be
-read in two ways (`1.234` is 1.234 or 1234; 0.1, 0.2, 0.3 last so long or are points in time), none is chosen: the
-user is asked.
+A number never silently becomes another number. A table with one possible reading is read and shown. Where it has two
+(`1.234` is 1.234 or 1234; 0.1, 0.2, 0.3 are durations or points in time), the user is asked.
 """
 
 import decimal as decimals
@@ -48,7 +47,7 @@ from hpn.tables.times import (
     laps_of,
 )
 from hpn.words import spellings, units
-from hpn.words.wording import N_, Sentence, Value
+from hpn.words.wording import N_, Sentence, Value, first_of
 
 MISSING = {
     AXIS: N_("Which column names the axis?"),
@@ -59,10 +58,11 @@ MISSING = {
 }
 
 SHARES = ("u", "eta", "fw")
-"""Inputs that may be written as percentages."""
+"""Inputs that may be percentages."""
 
 MOSTLY = 0.75
-"""Share of the axes from which on all times count as going on: a bad cell in one changes nothing for the others."""
+"""Share of axes with rising times from which on all times count as rising: one bad cell changes nothing for other axes.
+"""
 
 Row = tuple[CellNumber | None, ...]
 
@@ -91,17 +91,17 @@ FALLS = Choice("falls", OF_FALLS)
 SIDE = Choice("side", SIDES)
 STOP = Choice("stop", {"phase": N_("a phase"), "stop": N_("the emergency stop: its torque is T_k")})
 OF_SHAFT = ("T", "n", "FRi", "FAi", "Tpk", "npk", "Trms")
-"""Roles whose values are those of the output."""
+"""Roles of values at the output."""
 
 
 FIRST_ROWS, LAST_ROWS = 6, 2
-"""Rows of a long table that are shown."""
+"""Rows of a long table in its preview."""
 
 
 class Interpreter:
-    """A table on its way from cells to numbers.
+    """Interpreter of a table, from cells to numbers.
 
-    `rows` are the numbers of the columns that are used: None for a blank cell, and for one that is no number.
+    `rows` are the numbers of the used columns: None for a blank cell, and for a cell that is not a number.
     """
 
     required: Sequence[str] = REQUIRED
@@ -118,8 +118,8 @@ class Interpreter:
         self.lap = Fraction(0)
 
     @property
-    def said(self) -> dict[str, Any]:
-        """Fields that every table has."""
+    def facts(self) -> dict[str, Any]:
+        """Fields of every table."""
         return {
             "questions": tuple(self.questions.open),
             "choices": tuple(self.questions.choices),
@@ -131,7 +131,7 @@ class Interpreter:
         }
 
     def _shown_rows(self) -> tuple[ShownRow, ...]:
-        """The first and the last rows, each cell as it is read, and among them some of those that are skipped."""
+        """The first and the last rows, each cell as it is read, with some skipped rows among them."""
         rows = list(zip(self.body.numbers, self.body.rows, strict=True))
         hidden = len(rows) - FIRST_ROWS - LAST_ROWS
         if hidden > 1:
@@ -161,7 +161,7 @@ class Interpreter:
     # --- Columns ------------------------------------------------------------------------------------------------------
 
     def ask_columns(self) -> None:
-        """Ask for columns without a role or a unit, and for what has no column or two."""
+        """Ask about columns without a role or a unit, and about inputs without a column or with two."""
         of_side = self.ask_side()
         for column in self.columns:
             if not column.role and column not in of_side:
@@ -174,7 +174,7 @@ class Interpreter:
                 self.ask(template, name=column.called, unit=column.foreign, wire=wire)
         roles = [column.role for column in self.columns]
         for role in self.required:
-            if role not in (*roles, *(column.meant for column in of_side)) and self.is_missed(role, roles):
+            if role not in (*roles, *(column.likely for column in of_side)) and self.is_missed(role, roles):
                 self.ask(MISSING[role])
         for role in dict.fromkeys(roles):
             if role not in ("", SKIP) and roles.count(role) > 1:
@@ -182,38 +182,38 @@ class Interpreter:
                 self.ask(N_("Columns {one} and {other} are read as the same quantity."), one=names[0], other=names[1])
 
     def ask_side(self) -> list[Column]:
-        """Ask which shaft columns are of that are named after the motor; those about which this is the question.
+        """Ask about the shaft of columns named after the motor; the columns that this question leaves open.
 
-        Values of the motor are never those of the output: the gear's ratio and losses lie between them.
+        Values at the motor never equal those at the output: the gear's ratio and losses lie between them.
         """
-        held = [column.role for column in self.columns if not column.of_motor]
+        roles = [column.role for column in self.columns if not column.of_motor]
         named = [column for column in self.columns if column.of_motor and column.role in OF_SHAFT]
-        open_ = [column for column in self.columns if column.meant and not column.role and column.meant not in held]
+        open_ = [column for column in self.columns if column.likely and not column.role and column.likely not in roles]
         skipped = [column for column in self.columns if column.skipped is MOTOR]
         if not (named or open_ or skipped):
             return []
         listed = ", ".join(column.heading[:40] for column in (*named, *open_, *skipped)[:MOST_NAMED])
         template = N_("{names}: named after the motor or the gear’s input. Which shaft are the values of?")
         chosen = self.choose(SIDE, Sentence(template, {"names": listed}))
-        if chosen == "motor" and (named or not {"T", "n"}.issubset(held)):
+        if chosen == "motor" and (named or not {"T", "n"}.issubset(roles)):
             raise RefusedError(
                 N_("torque and speed are needed at the gear’s output; those of the motor are other values")
             )
         return open_ if not chosen else []
 
     def is_missed(self, role: str, roles: Collection[str]) -> bool:
-        """True where a role is asked that no column has."""
+        """True where the user is asked about a required role that no column has."""
         return True
 
     def _unit_question(self, column: Column) -> Sentence:
-        """Question for a unit that is open: which of two, or which at all where another is written."""
-        said = heading_over(self.body.headings[column.place]).units
-        codes = {spellings.codes_for(unit, column.quantity): unit for unit in sorted(said)}
-        meant, spelled = next(iter(codes.items())) if len(codes) == 1 else ((), "")
-        if len(meant) > 1:
+        """Question about an open unit: which of two, or which of the known units where the written one is unknown."""
+        units = heading_over(self.body.headings[column.place]).units
+        codes = {spellings.codes_for(unit, column.quantity): unit for unit in sorted(units)}
+        readings, spelled = next(iter(codes.items())) if len(codes) == 1 else ((), "")
+        if len(readings) > 1:
             template = N_("Which unit is column {name} in? It can be {first} or {second}.")
-            return Sentence(template, {"name": column.called, **either(meant, spelled)})
-        unknown = next((unit for unit in sorted(said) if not spellings.codes_for(unit, column.quantity)), "")
+            return Sentence(template, {"name": column.called, **either(readings, spelled)})
+        unknown = next((unit for unit in sorted(units) if not spellings.codes_for(unit, column.quantity)), "")
         if unknown:
             template = N_("Which unit is column {name} in? {unit} is not known; known units: {units}.")
             listed = known_units(column.quantity)
@@ -223,7 +223,7 @@ class Interpreter:
     # --- Numbers ------------------------------------------------------------------------------------------------------
 
     def ask_scale(self) -> None:
-        """Ask which number counts where a workbook shows one in thousands of the one that a cell holds."""
+        """Ask which number counts where a workbook shows a cell's number divided by thousands."""
         scaled = [self.body.scaled[column.place] for column in self.used if column.place in self.body.scaled]
         for text, held in scaled[:1]:
             template = N_("The workbook shows {shown} where the cell holds {held}. Which number counts?")
@@ -231,7 +231,7 @@ class Interpreter:
             self.choose(SCALES, Sentence(template, {**numbers}), numbers=numbers)
 
     def read_numbers(self) -> None:
-        """Read the numbers of the used columns by their decimal mark, which is asked where it has two readings."""
+        """Read the numbers of the used columns by their decimal mark; ask if both marks are possible."""
         rows_by_mark = {mark: [self._row(row, mark) for row in self.body.rows] for mark in DECIMALS}
         self.require_numbers(rows_by_mark)
         self.decimal = self._mark(rows_by_mark)
@@ -246,10 +246,10 @@ class Interpreter:
         return tuple(None if is_blank(cell) else entry(cell, mark, any_unit=self.any_unit) for cell in cells)
 
     def require_numbers(self, rows_by_mark: Mapping[Decimal, Sequence[Row]]) -> None:
-        """Raise RefusedError where a cell that is no number spoils the table."""
+        """Raise RefusedError where a cell that is not a number spoils the table."""
 
     def _mark(self, rows_by_mark: Mapping[Decimal, Sequence[Row]]) -> Decimal | None:
-        """The mark by which most cells are numbers; asked where two would give different ones, or both are written."""
+        """The mark by which most cells are numbers; ask if both give different numbers, or if both are written."""
         pairs = list(zip(*(chain.from_iterable(rows) for rows in rows_by_mark.values()), strict=True))
         counts = [sum(pair[k] is not None for pair in pairs) for k in (0, 1)]
         alone = [next((k for k, pair in enumerate(pairs) if pair[j] and not pair[1 - j]), None) for j in (0, 1)]
@@ -271,20 +271,20 @@ class Interpreter:
         return self.body.rows[row][self.used[column].place]
 
     def code(self, number: CellNumber, column: Column) -> str:
-        """Code of the unit that a number is in; a kind of table may raise RefusedError."""
+        """Code of a number's unit; subclasses may raise RefusedError."""
         return code_of(number, column)
 
     def in_wire(self, number: CellNumber, column: Column) -> str:
-        """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
+        """A number in the unit of the wire, in plain notation; blank if its unit does not fit the column."""
         return in_wire(number, column, self.code)
 
     def torque_of(self, row: Row) -> str:
-        """Torque of a row in the unit of the wire, blank where it has none."""
+        """Torque of a row in the unit of the wire; blank without one."""
         cells = zip(self.used, row, strict=True)
         return next((self.in_wire(cell, column) for column, cell in cells if column.role == "T" and cell), "")
 
     def ask_stop(self, numbers: Sequence[int]) -> str:
-        """Ask what rows are that are named like an emergency stop; blank while that is open, and for no such row."""
+        """Ask about rows named like an emergency stop; blank without such rows, and while the question is open."""
         if not numbers:
             return ""
         listed = ", ".join(f"{number} ({self.body.stops[number][:40]})" for number in numbers[:MOST_NAMED])
@@ -294,18 +294,21 @@ class Interpreter:
     # --- Times --------------------------------------------------------------------------------------------------------
 
     def seconds(self, row: Row) -> Fraction | None:
-        """Time of a row in seconds, None where it is blank or its unit is to be asked."""
+        """Time of a row in seconds; None if it is blank or its unit is still open."""
         for column, cell in zip(self.used, row, strict=True):
             if column.role == "t" and cell is not None and column.unit and (code := self.code(cell, column)):
                 return Fraction(cell.number) / units.entered("s", code).factor
         return None
 
     def read_times(self, groups: Sequence[Series]) -> str:
-        """Meaning of the times, blank where it is asked: they go on in most axes, or are named as points in time."""
+        """Meaning of the times, blank while the question is open, which is asked for times that rise or have a heading
+        of instants.
+        """
         columns = [column for column in self.columns if column.role == "t"]
         instant = any(column.instant for column in columns)
         timed = [(group, times) for group in groups if (times := self._times(group.rows))]
-        going_on = [go_on(times, on_clock=self._on_clock(columns)) for _, times in timed]
+        on_clock = any(":" in row[column.place] for column in columns for row in self.body.rows)
+        going_on = [go_on(times, on_clock=on_clock) for _, times in timed]
         if any(column.lasting for column in columns) or not (instant or self.may_go_on(going_on)):
             return "durations"
         few = not instant and sum(going_on) < MOSTLY * len(going_on)
@@ -322,13 +325,10 @@ class Interpreter:
         return chosen
 
     def _times(self, rows: Sequence[Row]) -> list[Fraction]:
-        """Seconds of several rows; none where one is not known."""
+        """Seconds of several rows; empty if one is unknown."""
         times = [self.seconds(row) for row in rows]
         known = [time for time in times if time is not None]
         return known if len(known) == len(times) > 1 else []
-
-    def _on_clock(self, columns: Sequence[Column]) -> bool:
-        return any(":" in row[column.place] for column in columns for row in self.body.rows)
 
     def _times_question(self, falling: Sequence[tuple[Series, Sequence[Fraction]]]) -> Sentence:
         if not falling:
@@ -339,16 +339,16 @@ class Interpreter:
         return Sentence(template, self._fall(*falling[0]))
 
     def _fall(self, series: Series, times: Sequence[Fraction]) -> dict[str, Value]:
-        """The first row whose time is before that of the row above, and both times as written."""
+        """The first row with an earlier time than the row above, and both times as written."""
         cells = dict(zip(self.body.numbers, self.body.rows, strict=True))
         place = next(column.place for column in self.columns if column.role == "t")
         before, after = (series.numbers[falls_of(times)[0] - step] for step in (1, 0))
         return {"row": after, "before": cells[before][place][:40], "after": cells[after][place][:40]}
 
     def _ask_falls(self, falling: Sequence[tuple[Series, Sequence[Fraction]]], *, dated: bool) -> None:
-        """Ask why times go back: a clock past midnight and a counter that begins anew gain a lap."""
+        """Ask why times fall; a clock past midnight or a counter that begins anew adds a lap."""
         rows = [series.numbers[k] for series, times in falling for k in falls_of(times)]
-        listed = ", ".join([*map(str, rows[:MOST_NAMED]), *(["…"] if len(rows) > MOST_NAMED else [])])
+        listed = first_of(rows, MOST_NAMED)
         template = N_("The times go back in row {rows}, first from {before} to {after}. What is it?")
         question = Sentence(template, {**self._fall(*falling[0]), "rows": listed})
         unit_s = self._seconds_of_unit()
@@ -361,21 +361,21 @@ class Interpreter:
         self.mend(chosen)
 
     def _seconds_of_unit(self) -> Fraction:
-        """Seconds of the unit that times are written in."""
+        """Seconds per unit of the times as written."""
         place = next(k for k, column in enumerate(self.used) if column.role == "t")
         pairs = [(self.seconds(row), Fraction(cell.number)) for row in self.rows if (cell := row[place])]
         return next((seconds / number for seconds, number in pairs if seconds and number), Fraction(1))
 
     def mend(self, fall: str) -> None:
-        """Change the rows by what a time that goes back was said to be."""
+        """Change the rows as the answer about falling times demands."""
 
     def may_go_on(self, going_on: Sequence[bool]) -> bool:
-        """True where the times of axes leave a choice."""
+        """True where the times of axes leave their meaning open."""
         return bool(going_on)
 
 
 def code_of(number: CellNumber, column: Column) -> str:
-    """Code of the unit that a number is in: its own, else its column's; blank where it is none of the column's."""
+    """Code of a number's unit: its own, else its column's; blank if it does not fit the column."""
     if not number.unit:
         return column.unit
     codes = spellings.codes_for(number.unit, column.quantity) if column.quantity else ()
@@ -383,7 +383,7 @@ def code_of(number: CellNumber, column: Column) -> str:
 
 
 def in_wire(number: CellNumber, column: Column, code_of: Callable[[CellNumber, Column], str] = code_of) -> str:
-    """A number in the unit of the wire, in plain notation; blank where its unit is none of the column's."""
+    """A number in the unit of the wire, in plain notation; blank if its unit does not fit the column."""
     if number.unit == PERCENT:
         return str(decimals.Decimal(number.number).scaleb(-2)) if column.role in SHARES else ""
     if column.held is None or not column.quantity:
@@ -396,6 +396,6 @@ def in_wire(number: CellNumber, column: Column, code_of: Callable[[CellNumber, C
 
 
 def unit_behind(cell: str) -> str:
-    """Letters behind a number as its unit, blank for any other cell."""
+    """Unit behind a number, beginning with a letter; blank for any other cell."""
     number, unit = split_unit(cell) if len(cell) <= LONGEST_CELL else ("", "")
     return unit if unit[:1].isalpha() and is_number(number) else ""

@@ -1,4 +1,4 @@
-"""Number formats of workbooks: what one shows around a number, by which the number has its unit."""
+"""Number formats of workbooks: the texts that a format shows around a number, which give its unit."""
 
 import operator
 from dataclasses import dataclass
@@ -8,11 +8,11 @@ from re import DOTALL
 from hpn.words.patterns import Pattern
 
 LONGEST_FORMAT = 255
-"""Characters, the most that spreadsheet programs take."""
+"""Characters, the limit of spreadsheet programs."""
 
 _TOKEN = Pattern(
     r'"(?P<quoted>[^"]*)"|\\(?P<escaped>.)'
-    r"|\[\$(?P<marked>[^\[\]]*?)(?:-(?:[0-9A-Fa-f]{2,8}|[a-z]{2}-[A-Z]{2}|x-\w+))?\]|\[(?P<said>[^\[\]]*)\]"
+    r"|\[\$(?P<marked>[^\[\]]*?)(?:-(?:[0-9A-Fa-f]{2,8}|[a-z]{2}-[A-Z]{2}|x-\w+))?\]|\[(?P<condition>[^\[\]]*)\]"
     r"|(?P<gap>[_*].|\s)|(?P<number>General|[0#?.,]+|E[+-]0+)|(?P<end>;)|(?P<other>.)",
     LONGEST_FORMAT,
     DOTALL,
@@ -23,12 +23,14 @@ _HOLDS = {
     **{">": operator.gt, ">=": operator.ge, "<>": operator.ne},
 }
 _UNSHOWN = "+-()@%"
-"""Of what stands without quotes: signs, brackets of negative numbers, text, and the sign of a percentage."""
+"""Unquoted signs that are no unit: signs of numbers, brackets of negative numbers, text, and the percent sign."""
 
 
 @dataclass(slots=True)
 class Section:
-    """A section of a number format: what it shows before and behind a number, and what the number is multiplied by."""
+    """A section of a number format: its texts before and behind the number, its condition, its digits, and percent or
+    not.
+    """
 
     before: str = ""
     behind: str = ""
@@ -38,7 +40,7 @@ class Section:
 
     @property
     def unit(self) -> str:
-        """Everything that is shown beside the number, but for its sign."""
+        """All text beside the number except its sign."""
         before, behind = self.before.strip(), self.behind.strip()
         if before.startswith("(") and behind.endswith(")"):
             before, behind = before[1:], behind[:-1]
@@ -46,18 +48,18 @@ class Section:
 
     @property
     def thousands(self) -> int:
-        """Number of times that a number is shown divided by a thousand."""
+        """Power of a thousand by which the shown number is divided."""
         whole = self.number.rstrip(",")
         return len(self.number) - len(whole) if whole else 0
 
     def holds(self, value: float) -> bool:
-        """True where its condition is met, or it has none."""
+        """True where its condition is met, or there is none."""
         condition = _CONDITION.fullmatch(self.condition)
         return condition is None or bool(_HOLDS[condition[1]](value, float(condition[2])))
 
 
 def section_of(number_format: str, value: float) -> Section | None:
-    """Section that shows a number, None where that is unknown, or some are shown in thousands and nothing says so.
+    """Section that shows a number; None if unknown, or if some sections show thousands and their units don't say so.
 
     A zero may be shown as a dash.
     """
@@ -88,8 +90,8 @@ def _sections(number_format: str) -> list[Section]:
         elif token["number"]:
             section.number += token["number"]
             section.behind += " " if section.behind else ""
-        elif token["said"] is not None:
-            section.condition = token["said"] if _CONDITION.fullmatch(token["said"]) else section.condition
+        elif token["condition"] is not None:
+            section.condition = token["condition"] if _CONDITION.fullmatch(token["condition"]) else section.condition
         else:
             section.percent |= token["other"] == "%"
             literal = token["quoted"] or token["escaped"] or token["marked"] or token["other"] or ""

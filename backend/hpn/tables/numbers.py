@@ -1,9 +1,9 @@
-"""Numbers as people type them: in their own units and with their decimal mark, turned into the wire's and back.
+"""Numbers as typed: in the user's units and with the user's decimal mark, converted to the wire's units and back.
 
-A form says in its field `written` whose language and units it is in. It takes numbers as pages print them: `20 000`,
-`1.5·10⁻³`, and `1.167.276` in German. A link without that field takes plain numbers alone. Nothing is lost on the way:
-a number that is shown shorter than it is stands in the field `was`, and counts as long as nobody edits it. A number may
-carry a unit of its own, `40 Nm`, or be a sum, `=40*2`: the wire has the plain number.
+A form's field `written` names its language and units. It takes numbers as pages print them: `20 000`, `1.5·10⁻³`, and
+`1.167.276` in German. A link without that field takes plain numbers only. No digit is lost on the way: the field `was`
+keeps a number that is shown rounded, and it counts until somebody edits the shown number. A number may carry a unit of
+its own, `40 Nm`, or be a sum, `=40*2`: the wire has the plain number.
 """
 
 from collections import Counter
@@ -21,13 +21,13 @@ from hpn.words.reader import Reader
 from hpn.words.units import NUMBER, SYMBOLS
 from hpn.words.wording import N_, Sentence, Typed
 
-Kind = Literal["number", "whole", "text", "flag", "by_size"]
+Kind = Literal["number", "whole", "text", "flag", "by_size", "curve"]
 
 WRITTEN, WAS = "written", "was"
-"""Fields that say how the others are written, and which exact numbers stand behind them."""
+"""Fields for the notation of the others, and for the exact numbers behind them."""
 
 DIGITS = 5
-"""Digits that a number from elsewhere is shown with in another unit."""
+"""Digits of a converted number that was not typed here."""
 
 LONGEST_TEXT = 100
 _LONGEST = 60
@@ -37,38 +37,38 @@ _ASKED = {
     decimal: Pattern(rf"[+-]?[1-9][0-9]{{0,2}}[{group}][0-9]{{3}}", _LONGEST)
     for decimal, group in ((".", ","), (",", "."))
 }
-"""Numbers whose mark may stand between thousands or be a decimal mark of another language."""
+"""Numbers whose mark may separate thousands, or be another language's decimal mark."""
 
 _POWER = Pattern(r"\s?[·×]\s?10([⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]{1,3})", _LONGEST)
 _RAISED = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 FLAGS: Mapping[str, bool] = {"0": False, "1": True, "false": False, "true": True}
-"""How no and yes are written."""
+"""Spellings of no and yes."""
 
 
 class Entry(str):
-    """A number in the wire's notation, with what stands in its field, and why it can't be read if it can't."""
+    """A number in the wire's notation, with the text of its field, and the reason why it can't be read, if so."""
 
-    shown: str
+    field_text: str
     refusal: Sentence | None
 
-    def __new__(cls, wire: str, shown: str, refusal: Sentence | None = None) -> "Entry":
-        """A text that behaves as `wire`."""
+    def __new__(cls, wire: str, field_text: str, refusal: Sentence | None = None) -> "Entry":
+        """A text equal to `wire`."""
         entry = super().__new__(cls, wire)
-        entry.shown, entry.refusal = shown, refusal
+        entry.field_text, entry.refusal = field_text, refusal
         return entry
 
 
 class FieldTexts(NamedTuple):
-    """Texts for the fields, by the texts of the wire that were asked for, and the field `was`."""
+    """Texts for the fields, one for each text of the wire, and the field `was`."""
 
     texts: list[str]
     was: str
 
 
 class Notation:
-    """Notation of the numbers of a form or link: its language and units, and the numbers that a form was made from.
+    """Notation of the numbers of a form or link: its language, its units, and a form's exact numbers.
 
-    `marker` is blank for a link. A form's numbers may be written as pages print them.
+    `marker` is None for a link. A form's numbers may be written as pages print them.
     """
 
     def __init__(self, fields: Mapping[str, str]) -> None:
@@ -82,7 +82,7 @@ class Notation:
                 self.was[unit, self.reader.measure(unit).written(float(text), DIGITS)] = float(text)
 
     def entry(self, text: str, unit: str) -> str:
-        """A text of a field in the wire's unit and notation; what is no number stays as it is."""
+        """A field's text in the wire's unit and notation; a text that is not a number stays as it is."""
         if not self.reader.marker and NUMBER.fullmatch(text):
             return text
         plain, measure = self._number(text, unit)
@@ -98,7 +98,7 @@ class Notation:
         return Entry(_plain(value) if isfinite(value) and not vanishes else plain, text)
 
     def _number(self, text: str, unit: str) -> tuple[str | Sentence | None, measures.Measure]:
-        """Number in plain notation and the unit that it is in; None where it is none, a message for what is wrong."""
+        """Number in plain notation, or an error message, or None for no number; and its unit."""
         own, decimal = self.reader.measure(unit), self.decimal
         if text.lstrip().startswith("="):
             return worked_out(text.strip(), self._in_sum), own
@@ -117,13 +117,15 @@ class Notation:
         return (code, own) if isinstance(code, Sentence) else (plain, measures.entered(unit, code))
 
     def _in_sum(self, number: str) -> str | Sentence | None:
-        """Number of a sum in plain notation, or advice in the reader's: it takes the place of a part of the text."""
+        """Number within a sum in plain notation, or advice with the reader's decimal mark, since it replaces part of
+        the text.
+        """
         plain = read_decimal(number, self.decimal)
         advice = None if plain else _advice(self._with_comma(number), whole=False)
         return advice.marked(self.reader.decimal) if advice else plain
 
     def _with_comma(self, text: str) -> str:
-        """A text as a link would have it, in which a comma is asked about and a point is not."""
+        """A text as a link writes it: a comma is ambiguous there, a point is not."""
         return text.replace(".", ",") if self.decimal == "," and _ASKED[","].fullmatch(_tidy(text)) else text
 
 
@@ -133,7 +135,7 @@ def _without_percent(number: str | None) -> Sentence | None:
 
 
 def unit_code(spelled: str, unit: str) -> str | Sentence:
-    """Code of a unit as somebody writes it, for a quantity in a unit of the wire, or what is wrong with it."""
+    """Code of a spelled unit for a quantity whose unit of the wire is `unit`, or an error message."""
     codes = spellings.codes_in(spelled, unit)
     if len(codes) == 1:
         return codes[0]
@@ -150,20 +152,20 @@ def unit_code(spelled: str, unit: str) -> str | Sentence:
 
 
 def known_units(quantity: str) -> str:
-    """Symbols of all units that are read for a quantity."""
+    """Symbols of all units in which a quantity can be read."""
     return ", ".join(measures.READ[quantity].values())
 
 
 def either(codes: Sequence[str], spelled: str) -> dict[str, Sentence]:
-    """Meanings of a spelling, as values of a sentence: two units, or one and a frequency that counts no turns."""
+    """Two meanings of a spelling, as values of a sentence: two units, or a unit and an electrical frequency."""
     first, second = (Sentence(measures.symbol_of_code(code)) for code in codes[:2])
     return {"first": first, "second": Sentence(ELECTRICAL) if spelled.strip() == spellings.FREQUENCY else second}
 
 
 def read_decimal(text: str, decimal: str) -> str | None:
-    """A number as a page prints it, in plain notation; None where it is none or could be two.
+    """A number as a page prints it, in plain notation; None for no number or an ambiguous one.
 
-    Without a decimal mark none but plain notation is read.
+    Without a decimal mark only plain notation is read.
     """
     plain = _tidy(text)
     if len(plain) > _LONGEST or (decimal and _ASKED[decimal].fullmatch(plain)):
@@ -185,10 +187,10 @@ def _tidy(text: str) -> str:
 
 
 def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str | None) -> FieldTexts:
-    """Texts of the wire, with their units, as the reader's form shows them; `written` marks how they came in.
+    """Texts of the wire, with their units, as the reader's form shows them; `written` is the marker they came with.
 
-    The reader's own entries stay as typed. Numbers from elsewhere are shown to five digits in another unit, or to all
-    digits where two numbers would look alike; the full number is remembered where the shown one is rounded.
+    The reader's own entries stay as typed. Converted numbers are shown to five digits, or to all digits where two
+    numbers would look alike; the field `was` keeps the full number where the shown one is rounded.
     """
     listed = [_Field(text, unit, reader, own=reader.marker == (written or "")) for text, unit in entries]
     alike = Counter(short for short, _ in {(field.short, field.value) for field in listed if field.value is not None})
@@ -201,7 +203,7 @@ def to_fields(entries: Iterable[tuple[str, str]], reader: Reader, written: str |
 
 
 class _Field:
-    """A text of the wire, and how its field shows it; `value` is None where it shows the wire's own unit."""
+    """A text of the wire, and its text in the field; `value` is None where the field shows the wire's own unit."""
 
     def __init__(self, wire: str, unit: str, reader: Reader, *, own: bool) -> None:
         self.unit, self.reader, self.measure = unit, reader, reader.measure(unit)
@@ -209,25 +211,25 @@ class _Field:
         number = bool(NUMBER.fullmatch(plain))
         self.value = float(plain) if number and not self.measure.same and isfinite(float(plain)) else None
         self.short = "" if self.value is None else self.measure.written(self.value, DIGITS), unit
-        self.typed = wire.shown if isinstance(wire, Entry) and (own or wire.refusal) else None
+        self.typed = wire.field_text if isinstance(wire, Entry) and (own or wire.refusal) else None
         self.wire = self._marked(wire) if number else wire
 
     @property
     def text(self) -> str:
-        """As typed, else short."""
+        """Typed text, else the short number."""
         if self.typed is not None:
             return self.typed
         return self.wire if self.value is None else self._marked(self.short[0])
 
     @property
     def exact(self) -> str:
-        """As typed, else with every digit."""
+        """Typed text, else the number with every digit."""
         if self.typed is not None:
             return self.typed
         return self.wire if self.value is None else self._marked(self.measure.shortest(self.value))
 
     def read(self, text: str) -> float | None:
-        """Number of the wire that a text would be read as, without memory."""
+        """Number of the wire that a text gives without the field `was`."""
         plain = read_decimal(text, self.reader.decimal)
         return None if plain is None else self.measure.wire(plain)
 
@@ -246,11 +248,11 @@ NOT_WHOLE = N_("must be a whole number")
 _ANY_NUMBER = Pattern(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?", _LONGEST)
 
 _IN_GROUPS = Pattern(r"[+-]?[1-9][0-9]{0,2}\.[0-9]{2}0", _LONGEST)
-"""A number as nobody writes a whole one, unless the point is meant to stand between thousands."""
+"""A decimal number that looks like a whole one with a point between thousands."""
 
 
 def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | int | str | Sentence:
-    """Value that a text stands for, or what to write instead; `mostly_whole` where hardly anyone means decimals."""
+    """Value of a text, or advice; `mostly_whole` marks inputs with hardly any decimals."""
     if isinstance(text, Entry) and text.refusal:
         return text.refusal
     original, text = text, text.strip()
@@ -266,7 +268,7 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
         return Sentence(N_("is too large"))
     if _is_too_small(plain, value):
         return Sentence(N_("is too small"))
-    with_comma = isinstance(original, Entry) and "," in original.shown
+    with_comma = isinstance(original, Entry) and "," in original.field_text
     if (mostly_whole or kind == "whole") and not with_comma and _IN_GROUPS.fullmatch(plain):
         decimal = _without_zeros(plain)
         return _to_write([decimal, plain.replace(".", "")][kind == "whole" and "." in decimal :])
@@ -276,12 +278,12 @@ def read_value(text: str, kind: Kind, *, mostly_whole: bool = False) -> float | 
 
 
 def _without_zeros(number: str) -> str:
-    """A number whose decimals can't be taken for a group of thousands."""
+    """A number without trailing zeros that could pass for a group of thousands."""
     return number.rstrip("0").rstrip(".") if _IN_GROUPS.fullmatch(number) else number
 
 
 def _is_too_small(plain: str, value: float) -> bool:
-    """True where a number in plain notation is another one than the zero that became of it."""
+    """True where a number other than zero became zero."""
     return value == 0 and not set("123456789").isdisjoint(plain.casefold().partition("e")[0])
 
 
@@ -289,17 +291,17 @@ ONE_READING = N_("write {number}")
 _SUCH_AS = N_("is not a number; write one such as 9.3")
 _BLANKS = Pattern(r"[\s'’]+", 2 * _LONGEST)
 _APART = Pattern(r"[0-9][\s'’]+(?![0-9]{3}(?![0-9]))[0-9]", 2 * _LONGEST)
-"""Digits with a blank between them where no thousands end: two numbers, or a point that was missed."""
+"""Digits with a blank between them that separates no thousands: two numbers, or a missing point."""
 
 
 def _advice(text: str, unit: str = "", *, mostly_whole: bool = False, whole: bool = True) -> Sentence | None:
-    """Advice in place of a number with this unit, None where there is none."""
+    """Advice for a number with this unit; None without any."""
     advice = _not_a_number(_tidy(text), "number", unit, mostly_whole=mostly_whole, whole=whole)
     return None if advice.template == _SUCH_AS else advice
 
 
 def _not_a_number(text: str, kind: Kind, unit: str = "", *, mostly_whole: bool = False, whole: bool = True) -> Sentence:
-    """Advice for a text that is no number: the numbers that it may stand for."""
+    """Advice for a text that is not a number: the numbers it may stand for."""
     tight = _BLANKS.sub("", text)
     if len(tight) > _LONGEST:
         return Sentence(N_("is too long for a number"))
@@ -320,6 +322,6 @@ def _to_write(readings: Sequence[str], unit: str = "", *, whole: bool = True) ->
 
 
 def _readings(text: str) -> list[str]:
-    """Numbers that a text may stand for under either decimal mark; `1,234` is either of two."""
+    """Numbers that a text may stand for under either decimal mark; `1,234` may be either of two."""
     numbers = (plain_number(text.removesuffix(","), decimal) for decimal in reversed(DECIMALS))
     return [number for number in dict.fromkeys(numbers) if number]

@@ -1,4 +1,4 @@
-"""Outcomes of a short table that is one cycle: what comes of it by each option of the choices that it leaves."""
+"""Outcomes of a short table with one cycle: the cycle that results from each option of its open choices."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
@@ -14,15 +14,15 @@ from hpn.tables.table import Choice, Interpretation, Table
 from hpn.words.wording import N_, Quantity, Sentence
 
 MOST_ROWS_TRIED, MOST_OPTIONS_TRIED = 100, 6
-"""Rows of a table, and options of its choices, that are read once more to show what comes of each."""
+"""Limits, in rows of a table and options of its choices, up to which the table is read again for each option."""
 
 OUTCOME = N_("speeds {lowest} to {highest}, cycle {time}")
 
 
 def with_outcomes(table: Table, grids: Sequence[Grid], choices: Choices, assumed: Collection[str]) -> Table:
-    """A table with the cycle by each option of its choices, if nothing else is open.
+    """A table with the cycle that each option of its choices gives, if nothing else is open.
 
-    Rows named like totals are left out, also where an option leaves it open what they are.
+    Rows named like totals are left out, even where an option leaves their meaning open.
     """
     if not 0 < table.rows <= MOST_ROWS_TRIED:
         return table
@@ -33,10 +33,10 @@ def with_outcomes(table: Table, grids: Sequence[Grid], choices: Choices, assumed
         if outcome := _outcome(read_grids(grids, replace(choices, **answer), assumed)):
             outcomes.setdefault(choice.name, {})[code] = outcome
 
-    def told(choice: Choice) -> Choice:
+    def with_own(choice: Choice) -> Choice:
         return replace(choice, outcomes=outcomes.get(choice.name, {}))
 
-    return replace(table, choices=tuple(map(told, table.choices)))
+    return replace(table, choices=tuple(map(with_own, table.choices)))
 
 
 def _outcome(table: Table) -> Interpretation | None:

@@ -1,4 +1,4 @@
-"""Questions about a table that are open, and the choices that it leaves."""
+"""Open questions about a table, and the choices of how it is read."""
 
 from dataclasses import replace
 from typing import Any
@@ -9,7 +9,7 @@ from hpn.words.wording import Sentence, Value
 
 
 class Questions:
-    """Open questions about a table, and the choices that it leaves, by the answers to them."""
+    """Open questions about a table, and the choices of how it is read, given the answers so far."""
 
     def __init__(self, answers: Choices) -> None:
         self.answers = answers
@@ -21,7 +21,7 @@ class Questions:
         self.open.append(Sentence(template, dict(values)))
 
     def choose(self, choice: Choice, question: Sentence, **more: Any) -> str:
-        """The option that somebody has chosen, else `chosen`, the usual one; blank, and asked, where there is none."""
+        """The answered option, else `chosen`, the usual one; without either, blank, and the question is asked."""
         answer: str = getattr(self.answers, choice.name)
         if answer in choice.options:
             more["chosen"] = answer

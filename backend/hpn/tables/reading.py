@@ -1,7 +1,7 @@
-"""From a file or a text to a reading, as plain data: the one way in for tables of phases, of axes and of motors.
+"""From a file or a text to a reading, as plain data: the only way in for tables of phases, axes and motors.
 
-Whatever cells say is looked at here and nowhere else: a service calls this in a process with limited memory and time,
-and shows what comes of it.
+The contents of cells are examined only here: a service calls this in a process with limited memory and time, and shows
+the result.
 """
 
 import hashlib
@@ -21,10 +21,10 @@ from hpn.words.wording import Sentence
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reading:
-    """A file or a text as the program takes it, with the questions that it leaves open.
+    """A file or a text as the program understands it, with its open questions.
 
-    `of` is the mark of its content, to which answers belong. Without a `table` it is asked which of its `sheets` is
-    meant; or `suffix` names the format of a table that is taken as it is, or its `text` is an object of JSON.
+    `of` is the mark of its content, to which answers belong. Without a `table` the user is asked for one of its
+    `sheets`; or `suffix` names the format of a table that is taken unread, or `text` is an object of JSON.
     """
 
     of: str = ""
@@ -39,16 +39,17 @@ class Reading:
 def reading_of(
     content: bytes | str, wanted: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
 ) -> Reading:
-    """Reading of a file or a text, by the answers to its questions; raises nothing but MemoryError.
+    """Reading of a file or a text with the answers to its questions; raises nothing but MemoryError.
 
-    A column without a unit is in one that is `assumed`.
+    A column without a unit is in one of the `assumed` units.
     """
     contents = contents_of(content, wanted)
     if contents.problem:
         return Reading(text=contents.text, table=Table(problem=contents.problem))
     if contents.suffix or contents.is_application:
         return Reading(text=contents.text, suffix=contents.suffix, is_application=contents.is_application)
-    of = _mark_of(contents.text or content)
+    whole = contents.text or content
+    of = hashlib.sha256(whole.encode(errors="replace") if isinstance(whole, str) else whole).hexdigest()[:16]
     if choices.of not in (of, ANY):
         choices = NO_CHOICES
     sheets = tuple(contents.sheets)
@@ -58,13 +59,8 @@ def reading_of(
     return Reading(of=of, text=contents.text, sheets=sheets, sheet=sheet, table=table)
 
 
-def _mark_of(content: bytes | str) -> str:
-    content = content.encode(errors="replace") if isinstance(content, str) else content
-    return hashlib.sha256(content).hexdigest()[:16]
-
-
 def _table(sheets: Sequence[Grid] | Sentence, wanted: TableBounds, choices: Choices, assumed: Collection[str]) -> Table:
-    """The table of a sheet; of axes or motors the reading that knows most columns, of those by each separator."""
+    """The table of a sheet; for axes or motors the separator that gives most known columns."""
     if isinstance(sheets, Sentence):
         return Table(problem=sheets)
     if wanted.inputs.has_axes:

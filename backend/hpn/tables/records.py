@@ -1,9 +1,9 @@
-"""From Parquet and Arrow to the cells of a table. Arrow is imported by this module.
+"""From Parquet and Arrow to the cells of a table. This module imports Arrow.
 
-The size of a table is checked as the file states it, and again as it was read: the file may be wrong.
+The size of a table is checked as the file states it, and again after reading: the file may be wrong.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from itertools import chain
 from typing import Any
@@ -18,16 +18,16 @@ from hpn.tables.sheets import MOST_CELLS, MOST_CHARACTERS, Grid, RefusedError, T
 from hpn.words.wording import N_
 
 LARGEST = 1e300
-"""Numbers beyond it stand as text, and are none."""
+"""Largest number; larger ones are kept as text and don't count as numbers."""
 
 MOST_BYTES = 16 * MOST_CHARACTERS
-"""Of the columns of a table in memory: cells, and what they say."""
+"""Bytes of a table's columns in memory: cells and their contents."""
 
 UNREADABLE = N_("the file can’t be read as Parquet or Arrow: save the table as CSV or XLSX")
 TOO_LONG = N_("the columns of the table take more than {most} MB: leave out those that are not needed")
 
 Found = tuple[str, Grid | None]
-"""Suffix of a table that is taken as it is, without cells; or its cells."""
+"""Suffix of a table that is taken unread, without cells; or blank with its cells."""
 
 
 def parquet(content: bytes, takes: Takes | None) -> Found:
@@ -72,7 +72,7 @@ def _read_errors() -> Iterator[None]:
         yield
     except (RefusedError, MemoryError):
         raise
-    except Exception:  # whatever the library meets in a broken file
+    except Exception:  # any error of the library in a broken file
         raise RefusedError(UNREADABLE) from None
 
 
@@ -99,11 +99,7 @@ def _grid(table: pa.Table) -> Grid:
     _require_few(table.num_rows, table.num_columns)
     _require_short([table.nbytes])
     rows = (row.values() for batch in table.to_batches(1000) for row in batch.to_pylist())
-    return _cells(table.column_names, rows)
-
-
-def _cells(names: Sequence[str], rows: Iterable[Iterable[Any]]) -> Grid:
-    return grid_of([_cell(value) for value in row] for row in chain([names], rows))
+    return grid_of([_cell(value) for value in row] for row in chain([table.column_names], rows))
 
 
 def _cell(value: Any) -> str:

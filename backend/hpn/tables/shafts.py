@@ -1,11 +1,11 @@
-"""Shafts that the names of columns are of: the motor's, which is the gear's input, or the gear's output."""
+"""Shafts in the names of columns: the motor's shaft, which is the gear's input, and the gear's output shaft."""
 
 from re import IGNORECASE
 
 from hpn.words.patterns import Pattern
 
 _LONGEST = 1000
-"""Characters of a name, as of those above one another together."""
+"""Characters of a name, or of the names above one another in a column together."""
 
 _SIDE = r"(?:[ -]?(?:shaft|side|welle|seite|drive|motor))?"
 _MOTOR = (
@@ -52,5 +52,5 @@ def without_index(name: str) -> str:
 
 
 def without_output(name: str) -> str:
-    """A name without words of the output, the side that all inputs are of."""
+    """A name without words of the output shaft, to which all inputs refer."""
     return OF_OUTPUT.sub("", name).strip(" _-")

@@ -1,4 +1,4 @@
-"""From a text to the cells of a table, by every separator that makes sense of it."""
+"""From a text to the cells of a table, by every plausible separator."""
 
 import csv
 import io
@@ -16,14 +16,14 @@ from hpn.words.wording import N_, Sentence, Value
 
 MAXIMUM_CHARACTERS = 1_000_000
 MOST_HEAD_ROWS = 50
-"""Rows beside those of the phases: title, header, units, sums."""
+"""Rows in addition to the phases: title, header, units, sums."""
 
 MOST_CELLS = 150_000
 MOST_CHARACTERS = 4_000_000
-"""Of all cells of a file, text by text."""
+"""Cells of a file, and characters of their texts."""
 
 LONGEST_TEXT = 131_072
-"""Characters of a cell, the most that the csv module takes, and four times what spreadsheet programs do."""
+"""Characters of a cell: the csv module's limit, and four times that of spreadsheet programs."""
 
 SEPARATORS = {
     "tab": N_("tab"),
@@ -35,15 +35,15 @@ SEPARATORS = {
 }
 _MARKS = {"tab": "\t", "semicolon": ";", "comma": ",", "bar": "|"}
 _HINT = Pattern(r"sep=(.)\r?\n", 7, IGNORECASE)
-"""First line with which Excel is told the separator."""
+"""First line that tells Excel the separator."""
 
 
 Takes = Callable[[Sequence[str], bool], bool]
-"""Test of the names of columns, and of phases in lists, for a table that needs no reading: it is taken as it is."""
+"""Test for a table that is taken unread, by the names of its columns and True where its phases are lists."""
 
 
 class RefusedError(ValueError):
-    """A table that can't be read, and why."""
+    """Error for a table that can't be read; `sentence` gives the reason."""
 
     def __init__(self, template: str, **values: Value) -> None:
         super().__init__(template)
@@ -51,19 +51,19 @@ class RefusedError(ValueError):
 
 
 def too_many_cells() -> RefusedError:
-    """Error for a table of very many cells."""
+    """Error for a table with too many cells."""
     template = N_("there are more than {most} cells: leave out the columns that are not needed")
     return RefusedError(template, most=MOST_CELLS)
 
 
 class CellBudget:
-    """Cells and characters that a file may still have: one short text may stand in each of very many cells."""
+    """Cells and characters that a file may still have: a large file may repeat one short text in very many cells."""
 
     def __init__(self, cells: int = MOST_CELLS) -> None:
         self._cells, self._characters = cells, MOST_CHARACTERS
 
     def take(self, texts: Iterable[str]) -> None:
-        """Count the cells of a row; raises RefusedError once there are too many, or they say too much."""
+        """Count the cells of a row; raises RefusedError for too many cells or characters."""
         for text in texts:
             self._cells -= 1
             self._characters -= len(text)
@@ -76,7 +76,7 @@ class CellBudget:
 
 
 def no_number(row: int, cell: str) -> RefusedError:
-    """Error for a cell that is no number, with what would be right where that is known."""
+    """Error for a cell that is not a number, with the remedy for a formula or a merged cell."""
     template = N_("row {row}: {cell} is not a number")
     if cell.startswith("="):
         template = N_("row {row}: {cell} has no calculated value; open and save the table in the spreadsheet program")
@@ -87,10 +87,10 @@ def no_number(row: int, cell: str) -> RefusedError:
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """Rows of cells, all of one width, with the number that each row has for the user.
+    """Rows of cells, all of one width, with the number of each row for the user.
 
-    `even` tells whether the rows had to have equally many cells: where a separator is a mark of numbers as well.
-    `notes` say what a reader of the file might not expect.
+    `counts` are the cells that each row had before it was filled up to that width. `notes` tell the user about
+    surprises in the file.
     """
 
     rows: tuple[tuple[str, ...], ...]
@@ -117,9 +117,9 @@ class Grid:
 
 
 def grid_of(rows: Iterable[Sequence[str]], separator: str = "", numbers: Iterable[int] | None = None) -> Grid:
-    """A table of rows that may differ in length; rows and columns at the ends that say nothing are left out.
+    """A table of rows that may differ in length; empty rows and empty columns at the end are left out.
 
-    Raises RefusedError for none, and for more cells than the longest cycle has.
+    Raises RefusedError for an empty table, and for more cells than the longest cycle has.
     """
     room = CellBudget()
     full = list[tuple[int, Sequence[str], int]]()
@@ -139,7 +139,7 @@ def grid_of(rows: Iterable[Sequence[str]], separator: str = "", numbers: Iterabl
 
 
 def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = MAXIMUM_CHARACTERS) -> list[Grid]:
-    """The text's cells by each separator that it may have; raises RefusedError where there are none."""
+    """The text's cells by each possible separator; raises RefusedError for an empty or too long text."""
     if len(text) > most_characters:
         raise RefusedError(N_("the text is too long: at most {most} characters"), most=most_characters)
     text = text.removeprefix("\ufeff")
@@ -153,7 +153,7 @@ def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = 
 
 
 def _separators(text: str) -> list[str]:
-    """Names of the separators that are possible. A tab or a semicolon is never part of a number; a comma may be."""
+    """Names of the possible separators. A tab or a semicolon is never part of a number; a comma may be."""
     lines = [line for line in text.splitlines() if line.strip()]
     for name in ("tab", "semicolon"):
         if any(_parts(name, lines, begin) for begin in _begins(name, lines)):
@@ -165,31 +165,33 @@ def _separators(text: str) -> list[str]:
 
 
 def _begins(name: str, lines: Sequence[str]) -> set[int]:
-    """Lines with which a table may begin: the first of all, or below others the first with a mark or with two."""
+    """Lines where a table may begin: the first line, the first with a mark, and the first with two marks."""
     counts = [line.count(_MARKS[name]) for line in lines]
     return {next((k for k, count in enumerate(counts) if count >= least), 0) for least in (0, 1, 2)}
 
 
 def _parts(name: str, lines: Sequence[str], begin: int) -> bool:
-    """True where a mark is in most lines from one on, and in two of them below others."""
+    """True where a mark is in most lines from line `begin` on, and in at least two of them unless `begin` is the first
+    line.
+    """
     count = sum(_MARKS[name] in line for line in lines[begin:])
     return count * 2 > len(lines) - begin and (begin == 0 or count >= 2)
 
 
 def _barred(lines: Sequence[str]) -> bool:
-    """True where bars make a table: each line has as many as the others, two at least. One may be part of a cell."""
+    """True where bars make a table: equally many in each line, at least two. A single bar may be part of a cell."""
     counts = {line.count("|") for line in lines if not _is_rule(line.strip())}
     return len(counts) == 1 and counts.pop() >= 2
 
 
 def _without_frame(line: str) -> str:
-    """A line of a table in Markdown without the bars at its ends; nothing of one that only sets the header apart."""
+    """A line of a Markdown table without the bars at its ends; empty for the rule below the header."""
     line = line.strip()
     return "" if _is_rule(line) else line.removeprefix("|").removesuffix("|")
 
 
 def _is_rule(line: str) -> bool:
-    """True for a line of a table in Markdown that only sets the header apart."""
+    """True for the rule below the header of a Markdown table."""
     return "--" in line and not line.strip("-|:+ ")
 
 
@@ -199,7 +201,7 @@ def _rows(text: str, name: str) -> Iterator[list[str]]:
     if name in _MARKS:
         try:
             yield from csv.reader(io.StringIO(text, newline=""), delimiter=_MARKS[name], skipinitialspace=True)
-        except csv.Error:  # a cell longer than the module takes
+        except csv.Error:  # a cell beyond the module's limit
             raise RefusedError(N_("a cell is longer than any number or heading")) from None
     else:
         between = "  " if name == "blanks" else " "
@@ -208,8 +210,8 @@ def _rows(text: str, name: str) -> Iterator[list[str]]:
 
 
 def require_even(grid: Grid, first: int, head: int, apart: Collection[int] = ()) -> None:
-    """Raise RefusedError where rows of the body, from `first` on, or of the header just above it differ in length
-    though they must not; rows that stand `apart`, by their numbers, are of any length.
+    """Raise RefusedError where rows of the body, from `first` on, or the `head` rows above it differ in length although
+    they must not; rows that stand `apart`, by their numbers, may have any length.
     """
     if not grid.even or not grid.counts:
         return

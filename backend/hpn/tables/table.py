@@ -1,4 +1,4 @@
-"""Table as it is read: what a page shows of it and asks about it, and what comes of it, as plain data."""
+"""Table as read: the preview and questions of a page, and the phases, axes or motors, as plain data."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,11 +11,11 @@ from hpn.tables.inputs import PHASE_ROLES
 from hpn.words.wording import Sentence
 
 MOST_SKIPPED = 5
-"""Rows that are skipped which stand among the others."""
+"""Skipped rows that the preview shows among the others."""
 
 
 class Interpretation(NamedTuple):
-    """Result of reading a table in one way: speeds and time in words, and the course of the speed as a path in SVG."""
+    """Result of reading a table in one way: speeds and time in words, and the course of the speed as an SVG path."""
 
     sentence: Sentence
     course: str
@@ -23,9 +23,10 @@ class Interpretation(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A choice of how a table is read: its question, its options, and the chosen one, blank while it is asked.
+    """A choice of how a table is read: its question, its options, and the chosen option, blank while the question is
+    open.
 
-    `numbers` shows beside an option what a number of the table is by it, `outcomes` what comes of the table.
+    `numbers` shows beside each option how it reads one number of the table; `outcomes` shows the resulting cycle.
     """
 
     name: str
@@ -37,9 +38,9 @@ class Choice:
 
 
 class PreviewCell(NamedTuple):
-    """A cell of a preview: a number in plain notation with its unit, one with two readings or none, or a text.
+    """A cell of a preview: a number in plain notation with its unit, a number with two readings or none, or a text.
 
-    A number that is `written` in some way is in the unit of the wire, given as suffix; any other in the unit behind it.
+    A number with its cell as `written` is in the unit of the wire, given as suffix; any other is in the unit behind it.
     """
 
     text: str
@@ -49,7 +50,7 @@ class PreviewCell(NamedTuple):
 
 
 class ShownRow(NamedTuple):
-    """A row of a preview by its number: its cells, or its text if it is skipped; and how many are hidden above it."""
+    """A row of a preview by its number: its cells, or its text if skipped; and the count of rows hidden above it."""
 
     number: int
     cells: tuple[PreviewCell, ...] = ()
@@ -59,13 +60,13 @@ class ShownRow(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
-    """Reading of a table. It can be taken when there is no problem and no question.
+    """Reading of a table, which can be taken when there is no problem and no question.
 
     `phases` of one cycle are plain numbers in units of the wire, in the order of PHASE_ROLES, blank where a phase has
-    no load; `names` are theirs, none where no column is read as that. `stop_Nm` is T_k by rows that are no phases but
-    the emergency stop, blank for none. `axes` are rows in list form by the names of `hpn fleet`, where a cell that is
-    no number stands as it is written; `origins` are the numbers of the rows that the phases of an axis stand in.
-    `motors` are rows of figures by the names of a motor's fields; their origins are by their designations.
+    no load; `names` are their names, empty without a column of names. `stop_Nm` is T_k from rows that are the emergency
+    stop instead of phases, blank without any. `axes` are rows in list form by the names of `hpn fleet`, where a cell
+    that is not a number stays as written; `origins` are the numbers of the rows of an axis's phases. `motors` are rows
+    of figures by the names of a motor's fields; their origins are by designation.
     """
 
     problem: Sentence | None = None
@@ -92,26 +93,26 @@ class Table:
 
     @property
     def unknown(self) -> int:
-        """Number of columns below a header of which nothing is known: they can be skipped at once."""
+        """Number of columns with unknown content below a header: they can be skipped at once."""
         return sum(column.is_unknown for column in self.columns) if self.headed else 0
 
     def choice(self, name: str) -> Choice | None:
-        """A choice by its name; None where the table leaves none."""
+        """A choice by its name; None where the table has no such choice."""
         return next((choice for choice in self.choices if choice.name == name), None)
 
     @property
     def remarks(self) -> list[Sentence]:
-        """Notes but for those that stand as skipped rows among the others."""
+        """Notes except those that the preview shows as skipped rows."""
         skipped = skipped_among(self.notes)
         return [note for note in self.notes if note not in skipped]
 
     @property
     def lasting_s(self) -> float | None:
-        """Seconds that all phases take; None where that is not known, or too long for a number."""
+        """Duration of all phases in s; None if unknown, or too long for a float."""
         total = sum(float(phase[PHASE_ROLES.index("t")] or 0) for phase in self.phases)
         return total if self.phases and isfinite(total) else None
 
 
 def skipped_among(notes: Sequence[Sentence]) -> list[Sentence]:
-    """Notes that stand as skipped rows among the others."""
+    """Notes that the preview shows as skipped rows."""
     return [note for note in notes if note.template == SKIPPED][:MOST_SKIPPED]

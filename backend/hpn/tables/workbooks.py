@@ -1,6 +1,6 @@
-"""From an XLSX file to the cells of its sheets: what each cell shows, and of a number every digit.
+"""From an XLSX file to the cells of its sheets: the text of each cell, and every digit of a number.
 
-A workbook is a zip archive of XML: how much it unpacks to is bounded before anything is read.
+A workbook is a zip archive of XML: its unpacked size is checked before it is read.
 """
 
 import zipfile
@@ -18,7 +18,7 @@ from warnings import catch_warnings
 from hpn.tables.cells import THOUSANDS, Figure, Merged, Spanning, is_number, tidy, written
 from hpn.tables.number_formats import LONGEST_FORMAT, section_of
 from hpn.tables.sheets import LONGEST_TEXT, MOST_CELLS, CellBudget, Grid, RefusedError, grid_of, too_many_cells
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, first_of
 
 if TYPE_CHECKING:
     from hpn.tables.worksheets import Span, Worksheet
@@ -28,7 +28,7 @@ OLD_MAGIC = b"\xd0\xcf\x11\xe0"
 """First bytes of workbooks before XLSX."""
 
 MAXIMUM_BYTES = 8_000_000
-"""Of all its parts, unpacked: several times what the longest cycle takes."""
+"""Bytes of all its parts, unpacked: several times the longest cycle."""
 
 MOST_PARTS = 300
 MOST_SHEETS = 20
@@ -36,11 +36,11 @@ LONGEST_NAME = 100
 """Characters of a sheet's name; spreadsheet programs write 31."""
 
 MOST_ROWS = 1_048_576
-"""Of a sheet, by the format."""
+"""Rows of a sheet, the limit of the format."""
 
 MOST_CELLS_OF_BOOK = 2 * MOST_CELLS
 MOST_WRITTEN_CELLS = 500_000
-"""Cells of a workbook, and of a sheet those that the file has, blank ones with a format among them."""
+"""Cells of a workbook; and cells of a sheet in the file, including blank cells with a format."""
 
 COUNTED = (
     ("styles.xml", b"<", 250_000, N_("styles")),  # 64,000 formats of cells are the most that Excel writes
@@ -57,8 +57,8 @@ COUNTED = (
     ("docProps/", b"<", 10_000, N_("properties")),
     ("theme/", b"<", 50_000, N_("styles")),
 )
-"""Marks in the parts of a file, by what stands in their names: what a reader takes far more time and memory for than
-there are bytes. A file may hide them under other names, and is then read until it meets the bounds of the process.
+"""Limits on marks in the parts of a file, by a piece of the part's name: a reader needs far more time and memory for
+these than their bytes suggest. A file may hide them under other names; then the limits of the process stop it.
 """
 
 
@@ -72,7 +72,7 @@ class Sheet:
     hidden_columns: str = ""
 
     def grid(self) -> Grid:
-        """Its cells as a table; raises RefusedError where there are none."""
+        """Its cells as a table; raises RefusedError without any."""
         notes = [
             Sentence(template, {"hidden": hidden})
             for template, hidden in ((HIDDEN_ROWS, self.hidden_rows), (HIDDEN_COLUMNS, self.hidden_columns))
@@ -85,18 +85,18 @@ Sheets = dict[str, Sheet]
 HIDDEN_ROWS = N_("Rows that are hidden in the workbook are read, too: {hidden}.")
 HIDDEN_COLUMNS = N_("Columns that are hidden in the workbook are read, too: {hidden}.")
 MOST_NAMED = 5
-"""Stretches of hidden rows or columns that are named."""
+"""Ranges of hidden rows or columns that a note names."""
 
 
 def sheets_of(content: bytes) -> Sheets:
-    """Cells of each sheet that has any, by its name; raises RefusedError where the file is no workbook."""
+    """Cells of each sheet that is not empty, by its name; raises RefusedError for an unreadable or empty workbook."""
     unreadable = RefusedError(N_("the workbook can’t be read: save it as XLSX or CSV"))
     try:
         _require_bounded(content)
         sheets = _sheets_in(content)
     except (RefusedError, MemoryError):
         raise
-    except Exception:  # whatever the library meets in a broken file
+    except Exception:  # any error of the library in a broken file
         raise unreadable from None
     if not sheets:
         raise RefusedError(N_("the workbook is empty"))
@@ -108,7 +108,7 @@ def _require_bounded(content: bytes) -> None:
         parts = archive.infolist()
         if len(parts) > MOST_PARTS:
             raise _too_many(N_("parts"))
-        # The zip module unpacks no more of a part than is declared here.
+        # The zip module never unpacks more of a part than its declared size.
         if sum(part.file_size for part in parts) > MAXIMUM_BYTES:
             template = N_("the workbook unpacks to more than {most} MB: save the sheet of the duty cycle alone")
             raise RefusedError(template, most=MAXIMUM_BYTES // 1_000_000)
@@ -128,11 +128,11 @@ def _too_many(what: str) -> RefusedError:
 
 
 def _sheets_in(content: bytes) -> Sheets:
-    import openpyxl  # takes a tenth of a second, which only workbooks need
+    import openpyxl  # takes a tenth of a second: only for workbooks
 
     from hpn.tables.worksheets import Worksheet
 
-    with catch_warnings(action="ignore"):  # of styles that are missing, and what else no cell shows
+    with catch_warnings(action="ignore"):  # of missing styles and other parts without effect on cells
         book = openpyxl.load_workbook(BytesIO(content), read_only=True, data_only=True, keep_links=False)
     sheets: Sheets = {}
     room = CellBudget(MOST_CELLS_OF_BOOK)
@@ -146,13 +146,13 @@ def _sheets_in(content: bytes) -> Sheets:
 def _sheet(sheet: "Worksheet", room: CellBudget) -> Sheet:
     rows, own, last = dict[int, list[str]](), CellBudget(), 0
     for number, row in sheet.rows():
-        last = max(number, last + 1)  # a number that is there twice is no row above
+        last = max(number, last + 1)  # a repeated number continues below
         if last > MOST_ROWS:
             raise too_many_cells()
-        if said := _placed(row):
-            own.take(said)
-            room.take(said)
-            rows[last] = said
+        if cells := _placed(row):
+            own.take(cells)
+            room.take(cells)
+            rows[last] = cells
     rows = _with_merged(rows, sheet.merged)
     filled = {place for row in rows.values() for place, cell in enumerate(row, start=1) if cell}
     return Sheet(
@@ -164,16 +164,16 @@ def _sheet(sheet: "Worksheet", room: CellBudget) -> Sheet:
 
 
 def _placed(row: list[Any]) -> list[str]:
-    """Texts of the cells of a row, each in its column, up to the last that has one."""
-    said = {cell.column: text for cell in row if (text := _text(cell))}
-    return [said.get(place, "") for place in range(1, max(said, default=0) + 1)]
+    """Texts of the cells of a row, each in its column, up to the last filled one."""
+    cells = {cell.column: text for cell in row if (text := _text(cell))}
+    return [cells.get(place, "") for place in range(1, max(cells, default=0) + 1)]
 
 
 def _with_merged(rows: dict[int, list[str]], spans: Iterable["Span"]) -> dict[int, list[str]]:
-    """Rows whose cells say so where a merged one with a number covers them: it may be the number of each, or of all.
+    """Rows in which the cells below a merged number are marked as Merged: the number may belong to each cell or to all.
 
-    A row that is covered altogether says nothing: there a row of the table is several rows high. A text knows the
-    columns that it is over.
+    A row with no other cells becomes empty: there a row of the table is several rows high. A merged text keeps its
+    width in columns.
     """
     widest, lowest = max(map(len, rows.values()), default=0), max(rows, default=0)
     cells = 0
@@ -201,29 +201,29 @@ def _with_merged(rows: dict[int, list[str]], spans: Iterable["Span"]) -> dict[in
 
 
 def _stretches(places: Iterable[int], named: Callable[[int], str]) -> str:
-    """Names of rows or columns, those that follow one another as one: `3–5, 9`."""
+    """Names of rows or columns, consecutive ones as a range: `3–5, 9`."""
     stretches: list[list[int]] = []
     for place in places:
         if stretches and place == stretches[-1][1] + 1:
             stretches[-1][1] = place
         else:
             stretches.append([place, place])
-    texts = [named(a) if a == b else f"{named(a)}–{named(b)}" for a, b in stretches[:MOST_NAMED]]
-    return ", ".join([*texts, *(["…"] if len(stretches) > MOST_NAMED else [])])
+    texts = [named(a) if a == b else f"{named(a)}–{named(b)}" for a, b in stretches]
+    return first_of(texts, MOST_NAMED)
 
 
 def _text(cell: Any) -> str:
-    """Text of a cell. A number keeps all its digits, and the unit that its format shows with it."""
+    """Text of a cell. A number keeps all its digits, and has the unit of its format."""
     value = cell.value
     if value is None:
         return ""
     if isinstance(value, time | timedelta):
         seconds = _seconds(value)
-        # Without seconds it may be meant as minutes and seconds, and stands as it is shown.
+        # Without seconds it may mean minutes and seconds, and stays as shown.
         return Figure(f"{written(seconds)} s") if "s" in str(cell.number_format).lower() else _without_seconds(seconds)
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) == inf:
         text = str(value)
-        return tidy(text) if len(text) <= LONGEST_TEXT else text  # an infinite one, such as 1e999, is no number
+        return tidy(text) if len(text) <= LONGEST_TEXT else text  # 1e999 is infinite and no number
     shown_as = str(cell.number_format)
     section = section_of(shown_as, value)
     if section is None:

@@ -1,6 +1,6 @@
-"""Worksheets as openpyxl parses them, with what it leaves out: formulas without a result, merged cells, what is hidden.
+"""Worksheets as openpyxl parses them, plus formulas without a result, merged cells and hidden rows and columns.
 
-openpyxl is imported by this module, which only requests with a workbook import.
+Only requests with a workbook import this module, and with it openpyxl.
 """
 
 from collections.abc import Collection, Iterator
@@ -24,9 +24,9 @@ class Span:
 
 
 class Worksheet:
-    """A sheet of a workbook that was opened for reading alone, parsed once.
+    """A sheet of a workbook opened read-only, parsed once.
 
-    Merged cells, hidden rows and hidden columns are known once all rows are read.
+    Merged cells, hidden rows and hidden columns are known after the last row.
     """
 
     def __init__(self, sheet: Any) -> None:
@@ -36,7 +36,7 @@ class Worksheet:
         self._hidden: list[tuple[int, int]] = []
 
     def rows(self) -> Iterator[tuple[int, list[ReadOnlyCell]]]:
-        """Number and cells of each row that the file has."""
+        """Number and cells of each row in the file."""
         book = self._sheet.parent
         with self._sheet._get_source() as source:
             parser = _Parser(
@@ -51,12 +51,12 @@ class Worksheet:
                 yield number, [ReadOnlyCell(self._sheet, **cell) for cell in cells]
         merged = parser.merged_cells.mergeCell if parser.merged_cells else ()
         self.merged = [Span(each.coord, *each.bounds) for each in merged]
-        self.hidden_rows = {int(row) for row, said in parser.row_dimensions.items() if _is_hidden(said)}
+        self.hidden_rows = {int(row) for row, style in parser.row_dimensions.items() if _is_hidden(style)}
         columns = filter(_is_hidden, parser.column_dimensions.values())
-        self._hidden = sorted((int(said["min"]), int(said["max"])) for said in columns)
+        self._hidden = sorted((int(style["min"]), int(style["max"])) for style in columns)
 
     def hidden_columns(self, places: Collection[int]) -> Iterator[int]:
-        """Those of some columns that are hidden."""
+        """Hidden columns among some places."""
         spans = iter(self._hidden)
         first, last = 0, 0
         for place in sorted(places):
@@ -72,17 +72,17 @@ class Worksheet:
 
 
 class _Parser(WorkSheetParser):
-    """openpyxl's, for which a formula that no program has worked out is a text and no blank."""
+    """Parser of openpyxl, except that a formula without a result is a text rather than a blank."""
 
     def parse_cell(self, element: Any) -> dict[str, Any]:
-        """A cell with what it holds."""
+        """A cell with its value, or with the text of a formula that has no result."""
         cell: dict[str, Any] = super().parse_cell(element)
         formula = element.find(FORMULA_TAG)
-        # The result may be a text without characters, which is one.
+        # An empty text is a result, too.
         if formula is not None and not element.findtext(VALUE_TAG) and element.get("t") != "str":
             cell |= {"value": f"={formula.text or ''}", "data_type": "s"}
         return cell
 
 
-def _is_hidden(said: dict[str, str]) -> bool:
-    return said.get("hidden") in ("1", "true")
+def _is_hidden(attributes: dict[str, str]) -> bool:
+    return attributes.get("hidden") in ("1", "true")

@@ -1,1 +1,1 @@
-"""Verification of a file: the figures that it shows beside those that are calculated again."""
+"""Verification of a file: its figures beside newly calculated ones."""

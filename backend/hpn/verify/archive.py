@@ -1,4 +1,4 @@
-"""A zipped file, which a workbook and a package are: its parts, within bounds."""
+"""Zipped file, such as a workbook or a package: its parts, within bounds."""
 
 import zlib
 from collections.abc import Mapping
@@ -8,11 +8,12 @@ from zipfile import BadZipFile, ZipFile
 from hpn.verify.shown import UnreadableFileError
 
 MOST_BYTES = 200_000_000
-"""Size of all parts, unpacked."""
+"""Most bytes of all parts, unpacked."""
 
 
 def unpacked(content: bytes, *, form: str, below: str = "") -> Mapping[str, bytes]:
-    """Parts of a zipped file by their names, those below a folder; UnreadableFileError names the form of file."""
+    """Parts of a zipped file in the folder `below`, by their names; raises UnreadableFileError, which names the
+    form."""
     try:
         with ZipFile(BytesIO(content)) as archive:
             if sum(entry.file_size for entry in archive.infolist()) > MOST_BYTES:

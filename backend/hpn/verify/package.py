@@ -1,21 +1,28 @@
-"""A package of the Asset Administration Shell: its elements by their paths, and the parts that it carries."""
+"""Package of the Asset Administration Shell: its elements by their paths, and the parts that it carries."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from xml.etree import ElementTree
 
 from hpn.verify.archive import unpacked
-from hpn.verify.shown import Shown, UnreadableFileError
+from hpn.verify.shown import FileLine, UnreadableFileError
 
-PARTS, DATA = "aasx/", "aasx/data.xml"
+PARTS, DATA, REPORT = "aasx/", "aasx/data.xml", "aasx/report.pdf"
+GEAR = "SelectionResult/Candidate"
+"""Element that names the gear of a package: earlier packages name it nowhere else."""
+
+REPORT_ELEMENT = "SelectionResult/Report"
+"""Element that names the report, which a package has where its maker could set one; the report is compared by
+itself."""
+
 NO_FIGURES = ("administration", "semanticId", "semanticIdListElement")
-"""Elements that name the template, which another version may follow in another edition."""
+"""Elements that name the template; other versions may follow another edition of it."""
 
 _NAMESPACE = re.compile(r"^\{[^}]*\}")
 
 
 def parts_of(content: bytes) -> Mapping[str, bytes]:
-    """JSON that a package carries, by its names."""
+    """JSON parts of a package, by their names."""
     return {
         name.removeprefix(PARTS): part
         for name, part in unpacked(content, form="package", below=PARTS).items()
@@ -23,8 +30,8 @@ def parts_of(content: bytes) -> Mapping[str, bytes]:
     }
 
 
-def lines_of(content: bytes) -> list[Shown]:
-    """Texts of its elements, each at the path of its short names, and the rows of its courses of motion."""
+def lines_of(content: bytes) -> list[FileLine]:
+    """Texts of its elements, each at the path of its short ids, and rows of its motion courses."""
     parts = unpacked(content, form="package", below=PARTS)
     try:
         root = ElementTree.fromstring(parts.get(DATA, b""))
@@ -33,27 +40,34 @@ def lines_of(content: bytes) -> list[Shown]:
     return [*_texts(root, ""), *_rows(parts)]
 
 
-def _rows(parts: Mapping[str, bytes]) -> Iterator[Shown]:
+def report_of(content: bytes) -> bytes:
+    """Report in a package; empty without one."""
+    return unpacked(content, form="package", below=REPORT).get(REPORT, b"")
+
+
+def _rows(parts: Mapping[str, bytes]) -> Iterator[FileLine]:
     for name, part in parts.items():
         if name.endswith(".csv"):
             for number, line in enumerate(part.decode(errors="replace").splitlines(), 1):
                 place = f"{name.removeprefix(PARTS)}/row {number}"
-                yield Shown(place, line.replace(",", " "), key=place)
+                yield FileLine(place, line.replace(",", " "), key=place)
 
 
-def _texts(element: ElementTree.Element, path: str) -> Iterator[Shown]:
+def _texts(element: ElementTree.Element, path: str) -> Iterator[FileLine]:
     short = next((child.text or "" for child in element if _name(child) == "idShort"), "")
     path = "/".join(filter(None, (path, short)))
     name = _name(element)
+    if path == REPORT_ELEMENT:
+        return
     if name != "idShort" and element.text and element.text.strip():
-        yield Shown(path, f"{name} {element.text.strip()}", key=_key(path))
+        yield FileLine(path, f"{name} {element.text.strip()}", key=_key(path))
     for child in element:
         if _name(child) not in NO_FIGURES:
             yield from _texts(child, path)
 
 
 def _key(path: str) -> str:
-    """Name of an element among all: of technical data without its section, which earlier packages do not have."""
+    """Key of an element; for technical data without its section, which earlier packages lack."""
     first, _, rest = path.partition("/")
     return f"{first}/{rest.rpartition('/')[2]}" if first == "TechnicalData" and rest else path
 
@@ -62,6 +76,12 @@ def _name(element: ElementTree.Element) -> str:
     return _NAMESPACE.sub("", element.tag)
 
 
+def gear_in(lines: Iterable[FileLine]) -> str:
+    """Gear in the lines of a package; blank without one."""
+    values = (line.text.partition(" ") for line in lines if line.key == GEAR)
+    return next((value for name, _, value in values if name == "value"), "")
+
+
 def links_of(content: bytes) -> list[str]:
-    """None: a package carries its application."""
+    """Empty list: a package carries its application."""
     return []

@@ -1,4 +1,4 @@
-"""Figures of today, by which those of a file with another wording are found again."""
+"""Figures of today, used to find the figures of a file with other wording."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from hpn.account.account import Account
 from hpn.explain.comparison import is_same
-from hpn.verify.shown import FIGURE, Shown, agrees, value_of
+from hpn.verify.shown import FIGURE, FileLine, agrees, value_of
 from hpn.words.reader import GROUP, Reader
 from hpn.words.units import CHOICES, SYMBOLS
 
 Token = tuple[str, str]
-"""A figure and the word behind it, mostly its unit."""
+"""Figure and the word after it, mostly its unit."""
 
 UNITS = frozenset((*SYMBOLS.values(), *(symbol for units in CHOICES.values() for symbol in units.values()), "%"))
 DESIGNATION = re.compile("HPN-[0-9]")
@@ -27,26 +27,26 @@ OF_SOURCES = frozenset(
 RELATIONS = frozenset("=≤≥<>·≈")
 FORMULA = re.compile("[=·√→]")
 MANY_DIGITS = 5
-"""Digits from which on a figure needs no unit to be known again."""
+"""Least digits of a figure that is recognised without a unit."""
 
 
-def named(line: Shown) -> list[Token]:
+def named(line: FileLine) -> list[Token]:
     """Figures of a line with their units, and designations; letters with an index, such as L10, are names."""
     words = [word for word in re.split(rf"[ |]+|(?<![0-9]){GROUP}", line.text) if word]
-    found: list[Token] = []
+    tokens: list[Token] = []
     for before, word, following in zip(["", *words], words, [*words[1:], ""], strict=False):
         plain = word.strip("()“”,;:.→−-+±>")
         if FIGURE.fullmatch(plain):
             unit = following.strip("().,;:")
-            found.append((plain, unit if unit in UNITS else SOURCE if before.lstrip("(") in OF_SOURCES else ""))
+            tokens.append((plain, unit if unit in UNITS else SOURCE if before.lstrip("(") in OF_SOURCES else ""))
         elif DESIGNATION.match(plain):
-            found.append((plain, ""))
-    return found
+            tokens.append((plain, ""))
+    return tokens
 
 
 @dataclass(frozen=True, slots=True)
 class Today:
-    """Figures that today’s file shows, and values of the account by symbol and unit, every digit of them."""
+    """Figures of today’s file, and values of the account by symbol and unit, with every digit."""
 
     tokens: frozenset[Token]
     values: Mapping[Token, float]
@@ -54,8 +54,8 @@ class Today:
     mark: str
 
     @classmethod
-    def of(cls, account: Account, reader: Reader, mark: str, lines: Iterable[Shown]) -> "Today":
-        """Figures of an account and of the lines of the file that is made of it."""
+    def of(cls, account: Account, reader: Reader, mark: str, lines: Iterable[FileLine]) -> "Today":
+        """Figures of an account, and of the lines of the file made of it."""
         tokens = frozenset(token for line in lines for token in named(line))
         return cls(tokens, dict(_by_symbol(account, reader)), dict(_by_relation(account, reader)), mark)
 
@@ -72,24 +72,24 @@ class Today:
         known = (other for (_, of), other in self.values.items() if unit and of == unit)
         return any(agrees(figure, other, self.mark) for other in known)
 
-    def has_all(self, line: Shown) -> bool:
-        """True for a line whose figures today has too; what is inside a formula can't be told."""
+    def has_all(self, line: FileLine) -> bool:
+        """True for a line whose figures today has too; False for figures inside a formula, which can't be told."""
         return not (line.figures and FORMULA.search(line.text)) and all(map(self.has, named(line)))
 
     def _has_digits(self, value: float) -> bool:
         figures = (figure for figure, _ in self.tokens if FIGURE.fullmatch(figure))
         return any(is_same(value, value_of(figure, self.mark)) for figure in figures)
 
-    def other_value(self, line: Shown) -> str | None:
-        """Values of today in place of the figures behind a symbol or the relation of a check.
+    def other_value(self, line: FileLine) -> str | None:
+        """Values of today in place of the figures after a symbol or after the relation of a check.
 
-        Blank where they agree, None for a line without one that is known.
+        Blank where they agree, None for a line without a known symbol or relation.
         """
         text = re.sub(" +", " ", re.sub(r"[_|]", "", line.text))
         for relation, values in self.relations.items():
             if f"{relation} " in text:
-                shown = Shown("", text.partition(f"{relation} ")[2]).figures
-                pairs = [(figure, value) for figure, value in zip(shown, values, strict=False) if value is not None]
+                figures = FileLine("", text.partition(f"{relation} ")[2]).figures
+                pairs = [(figure, value) for figure, value in zip(figures, values, strict=False) if value is not None]
                 is_other = any(not agrees(figure, value, self.mark) for figure, value in pairs)
                 return relation + "".join(f" {value:.12g}" for _, value in pairs) if is_other else ""
         words = text.split(" ")
@@ -101,10 +101,10 @@ class Today:
 
 
 def _by_symbol(account: Account, reader: Reader) -> Iterator[tuple[Token, float]]:
-    """Values by symbol and unit, without the low line of T_av."""
+    """Values by symbol and unit, without ranges."""
     lines = (*account.cycle, *account.figures, *account.published, *account.loads, *account.requirements)
     for line in lines:
-        value = line.shown(reader)
+        value = line.value_for(reader)
         if line.named.symbol and isinstance(value, float | int) and line.until is None:
             yield (line.named.symbol.replace("_", ""), reader.unit(line.unit)), float(value)
 

@@ -1,4 +1,4 @@
-"""Outcome of a verification: each shown figure that differs, with the reason, and lines that can't be checked."""
+"""Outcome of a verification: the figures that differ, with the reasons, and the lines that can't be checked."""
 
 from typing import Literal
 
@@ -9,9 +9,9 @@ Reason = Literal["catalogue", "engine", "file"]
 
 
 class Finding(Reply, frozen=True):
-    """One line or value that a file shows and that is not what is calculated; blank where one has none there.
+    """Line or value of a file that differs from the calculated one; a side without one is blank.
 
-    More than one reason where they can't be told apart.
+    There is more than one reason where they can't be told apart.
     """
 
     place: str
@@ -21,23 +21,29 @@ class Finding(Reply, frozen=True):
 
 
 class FileVersions(Reply, frozen=True):
-    """FileVersions of calculation and catalogue, None where a file says none."""
+    """Versions of calculation and catalogue; None where the file has none."""
 
     engine: str | None
     catalogue: str | None
 
-    def reasons(self, catalogue: str) -> tuple[Reason, ...]:
-        """Reasons for which a file of these versions may differ: it was altered where they are those of here."""
-        found: list[Reason] = []
+    def reasons(self, catalogue: str, *limits: object) -> tuple[Reason, ...]:
+        """Reasons why a file of these versions may differ: it was altered where both versions are those of this
+        installation.
+
+        Where both versions differ, the limits of its checks and those of today, if given, decide between the two.
+        """
+        reasons: list[Reason] = []
         if self.engine != ENGINE_VERSION:
-            found.append("engine")
+            reasons.append("engine")
         if self.catalogue != catalogue:
-            found.append("catalogue")
-        return tuple(found) or ("file",)
+            reasons.append("catalogue")
+        if len(reasons) > 1 and limits:
+            return ("engine",) if limits[0] == limits[1] else ("catalogue",)
+        return tuple(reasons) or ("file",)
 
 
 class Verdict(Reply, frozen=True):
-    """Verdict on a file: how many figures it shows that are the same, which differ, and what can't be checked."""
+    """Verdict on a file: number of equal figures, the figures that differ, and the lines that can't be checked."""
 
     file: str
     versions: FileVersions

@@ -4,21 +4,20 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.verify import replies
 from hpn.verify.paper import PACKAGE, PDF, WORKBOOK, Format, verified
-from hpn.verify.shown import UnreadableFileError
+from hpn.verify.shown import FileSubject, UnreadableFileError
 from hpn.verify.verdict import Verdict
 
 WORKBOOK_PART, PACKAGE_PART = b"xl/workbook.xml", b"aasx/"
 
 
-def verify(content: bytes, catalogue: Catalogue, application: Application | None = None) -> Verdict:
-    """Verdict on a file; raises UnreadableFileError for one that is none of ours."""
+def verify(content: bytes, catalogue: Catalogue, question: FileSubject | None = None) -> Verdict:
+    """Verdict on a file; raises UnreadableFileError for a file that the product has not written."""
     form = _format_of(content)
     if form is not None:
-        return verified(form, content, catalogue, application)
+        return verified(form, content, catalogue, question)
     return replies.verified(_object_of(content), catalogue)
 
 

@@ -1,4 +1,4 @@
-"""The service: one factory that puts settings, catalogue, store, routes and limits together."""
+"""Service: a factory that assembles settings, catalogue, store, routes and limits."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -11,7 +11,6 @@ from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES
 
 from hpn import ENGINE_VERSION
 from hpn.application import Application, Pairing
-from hpn.catalogue import load_catalogue
 from hpn.documents.axis import Axis
 from hpn.documents.document import Document
 from hpn.documents.revision import RevisionBlock
@@ -103,7 +102,7 @@ CORS: dict[str, Any] = {
     ],
     "max_age": 3600,
 }
-"""Methods and headers that scripts of the permitted origins may send and read."""
+"""Methods and headers that scripts of permitted origins may send, and headers that they may read."""
 
 
 UNPACKED = (
@@ -112,7 +111,7 @@ UNPACKED = (
     *NDJSON,
     *fleet.MEDIA_TYPES.values(),
 )
-"""Kinds of content that are not compressed on their way: compressed already, or lines that must not wait."""
+"""Content types that are sent uncompressed: they are compressed already, or consist of lines that must not wait."""
 
 ROUTERS: tuple[APIRouter, ...] = (
     health.router,
@@ -181,10 +180,10 @@ BODIES = (
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
-    """The application; raises CatalogueError where the catalogue or its supplement is wrong.
+    """Web application; raises CatalogueError for a faulty catalogue or supplement.
 
-    At its start it brings the database up to date, and raises NewerDatabaseError where a newer version has changed it.
-    A database that is out of reach keeps nothing from starting, nor does one that takes long.
+    At its start the application updates the database; it raises NewerDatabaseError if a newer version has changed it.
+    A slow database, or one out of reach, does not prevent the start.
     """
     settings = settings or Settings()
     app = FastAPI(
@@ -202,9 +201,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         lifespan=_with_store,
     )
     app.state.settings = settings
-    app.state.catalogue = load_catalogue(
-        settings.catalogue_folder, settings.catalogue_supplement, settings.averaging_seconds
-    )
+    app.state.catalogue = settings.catalogue()
     app.state.spool = spool.Trial(settings)
     app.state.fleets_under_way = set()
     app.state.gate = Gate(settings)
@@ -222,9 +219,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
-    """Add the middleware that every request passes, from the inside out."""
+    """Add the middleware of all requests, from the inside out."""
     app.add_middleware(Readers)
-    # Nothing secret stands beside what a page repeats of its query, so its length after compression tells nothing.
+    # A page that quotes its query contains no secret, so its length after compression reveals nothing.
     app.add_middleware(Packing, compresslevel=4, exclude_content_types=UNPACKED)
     app.add_middleware(Heads)
     if settings.cors_origins:
@@ -239,7 +236,7 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
 async def _with_store(app: FastAPI) -> AsyncIterator[None]:
     store: Store = app.state.store
     fleets.remove_leftovers(app.state.settings)
-    with suppress(StoreUnavailableError, TimeoutError):  # the store says so in the log, and opens as soon as it can
+    with suppress(StoreUnavailableError, TimeoutError):  # the store logs it, and opens as soon as it can
         async with asyncio.timeout(app.state.settings.database_seconds):
             await store.open()
     asking = asyncio.create_task(app.state.todays.run())

@@ -1,6 +1,6 @@
-"""Saving a selection and opening it again, for the API and the pages alike."""
+"""Saving and reopening of selections, for both API and pages."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Annotated, TypeVar
 
@@ -20,7 +20,7 @@ from hpn.engine.selection import Selection, encode, select
 from hpn.explain.differences import Difference, FigureDifference, differences, figure_differences
 from hpn.links.labels import FIELDS, query_of
 from hpn.links.writer import to_link
-from hpn.store import Draft, KeyReusedError, KeySpentError, SavedSelection
+from hpn.store import Draft, KeyReusedError, KeySpentError, RevisionLine, SavedSelection
 from hpn.web.columns import columns_of
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
@@ -44,7 +44,7 @@ Line = Annotated[
     AfterValidator(_line),
     Field(json_schema_extra={"pattern": f"^[^{SCHEMA_CONTROLS}]*$"}),
 ]
-"""One line of text that something is looked for by; an empty one counts as none."""
+"""One line of text that is used for searching; an empty line becomes None."""
 
 
 class Names(Model):
@@ -61,8 +61,8 @@ class Labels(Names):
     revision: Title | None = Field(None, description="Its revision in your own documents.", examples=["B"])
     ordering_code: Line | None = Field(
         None,
-        description="Gear, output version and motor adapter as ordered, as far as they are known. The gear has to be "
-        "a candidate; page and files then show it first.",
+        description="Gear, output version and motor adapter as ordered, as far as they are known. The gear must be a "
+        "candidate; page and files then show it first.",
         examples=["HPN-20A-5-J6-BH-AF1"],
     )
 
@@ -75,11 +75,11 @@ class SaveRequest(Labels):
 
 @dataclass(frozen=True, slots=True)
 class Reopened:
-    """A saved selection as it was, and what today's engine and catalogue say to its application.
+    """Saved selection as it was, and the answer of today's engine and catalogue to its application.
 
-    `application` is None where a version with other inputs saved it. `problem` is why there is no answer `today`.
+    `application` is None if a version with other inputs saved it. `problem` is the reason if there is no `today`.
     `link` leads to the live form with a copy of the application and its labels. `then` is the catalogue of that time,
-    and `figures` what today's publishes differently; None where that of then is not kept.
+    and `figures` are its differences from today's; both are None if that catalogue is not kept.
     """
 
     saved: SavedSelection
@@ -99,7 +99,7 @@ def url_of(id: str) -> str:
 
 
 async def keep(request: Request, draft: Draft) -> str:
-    """Save for whoever asks; the id under which it is durable. Problem 422 or 410 for a key that was used before."""
+    """Save a draft; its id once it is durable. Problem 422 or 410 for an idempotency key that was used before."""
     state: State = request.app.state
     state.metrics.selections(["none" if draft.selected is None else "selected"])
     try:
@@ -115,11 +115,11 @@ async def keep(request: Request, draft: Draft) -> str:
 def draft_of(
     catalogue: Catalogue, application: Application, labels: Labels, key: str | None, owner: str | None = None
 ) -> Draft:
-    """Record of an application to be saved: its own JSON and the reply of `select`; InputError as there."""
+    """Record of an application to be saved: its JSON and the reply of `select`; raises InputError as `select` does."""
     selection = select(application, catalogue, to_link)
     code = _ordered(catalogue, selection, labels.ordering_code)
     candidate = selection.foremost if code is None else selection.candidate(code.gear.designation)
-    assert candidate is not None  # `_ordered` refuses what is no candidate
+    assert candidate is not None  # `_ordered` refuses a gear that is no candidate
     revision, cycle = labels.revision or "", application.duty_cycle
     return Draft(
         application=application.model_dump_json(exclude_unset=True).encode(),
@@ -145,7 +145,7 @@ def draft_of(
 
 
 def _ordered(catalogue: Catalogue, selection: Selection, text: str | None) -> OrderingCode | None:
-    """Ordering code of one of the candidates; InputError for any other."""
+    """Ordering code read from a text; InputError for an invalid code and for a gear that is no candidate."""
     if text is None:
         return None
     code = read_ordering_code(catalogue, text)
@@ -158,7 +158,7 @@ def _ordered(catalogue: Catalogue, selection: Selection, text: str | None) -> Or
 
 
 def _link(saved: SavedSelection, selection: Selection, catalogue: Catalogue) -> str:
-    """Address of the live page with what was saved: its application, the gear of its ordering code, its labels."""
+    """Address of the live page with the saved application, the gear of its ordering code, and its labels."""
     labels = {name: getattr(saved, field) or "" for name, field in FIELDS.items()}
     gear, code = "", read_ordering_code(catalogue, saved.ordering_code or "")
     if isinstance(code, OrderingCode):
@@ -168,18 +168,20 @@ def _link(saved: SavedSelection, selection: Selection, catalogue: Catalogue) -> 
     return selection.link + gear + query_of(labels)
 
 
-async def found(request: Request, id: str, work: Callable[[Reopened], T], label: str | None = None) -> T:
-    """A saved selection, or a revision of it, with its differences of today, computed on a worker; Problem 404."""
+async def on_saved(request: Request, id: str, work: Callable[[Reopened], T], label: str | None = None) -> T:
+    """Result of `work` on a reopened selection or revision, computed on a worker; Problem 404 for an unknown one."""
     state: State = request.app.state
     saved, then = await with_catalogue(state, id, label)
     return await compute(request, "pages", lambda: work(reopen(saved, then, state.catalogue)))
 
 
 async def with_catalogue(state: State, id: str, label: str | None = None) -> tuple[SavedSelection, Catalogue | None]:
-    """A saved selection as its latest revision or that of a label, and the catalogue it was saved under, None where
-    that is not kept; Problem 404.
+    """Saved selection in its latest revision or that of a label, and its catalogue of that time, None if that is not
+    kept; Problem 404 for an unknown id or label.
     """
     saved = await state.store.find(id, label)
+    if saved is None and label is not None and (latest := await state.store.find(id)) is not None:
+        raise no_revision(url_of(id), label, latest.revisions)
     if saved is None:
         raise not_found(id)
     if saved.catalogue_version == state.catalogue.version:
@@ -188,34 +190,55 @@ async def with_catalogue(state: State, id: str, label: str | None = None) -> tup
 
 
 async def changeable(request: Request, id: str) -> SavedSelection:
-    """A saved selection that whoever asks may rename and delete; Problem 404, 403, or on a page 401 without a key."""
+    """Saved selection that the caller may rename and delete; Problem 404, 403, or on a page 401 without a key."""
     state: State = request.app.state
+    saved = await latest_of(state, id)
+    state.gate.require_owner(request, saved.owner)
+    return saved
+
+
+async def latest_of(state: State, id: str) -> SavedSelection:
+    """Saved selection in its latest revision; Problem 404 for an unknown id."""
     saved: SavedSelection | None = await state.store.find(id)
     if saved is None:
         raise not_found(id)
-    if state.gate.has_keys:
-        state.gate.require_owner(request, saved.owner)
     return saved
 
 
 def not_found(id: str) -> Problem:
-    """There is no such saved selection."""
+    """Problem 404 for an unknown saved selection."""
     return Problem(404, f"there is no saved selection {id[:60]!r}; it may have been deleted")
 
 
+NO_REVISION = N_("There is no revision “{label}”; there are {labels}.")
+NO_REVISION_OF_MANY = N_("There is no revision “{label}”; there are {labels} and {count} older ones.")
+NO_REVISION_YET = N_("There is no revision “{label}”: none is saved yet.")
+MOST_NAMED = 20
+"""Maximum revisions that a Problem for an unknown label names."""
+
+
+def no_revision(place: str, label: str, lines: Sequence[RevisionLine]) -> Problem:
+    """Problem 404 for an unknown revision of the document at `place`; it names the existing ones, the latest first."""
+    named = [line.label for line in lines[:MOST_NAMED]]
+    more = len(lines) - len(named)
+    text = NO_REVISION_YET if not lines else NO_REVISION_OF_MANY if more else NO_REVISION
+    values = {"label": repr(label[:20])[1:-1], "labels": ", ".join(named), "count": str(more)}
+    return Problem(404, Sentence(text, values), ways=[(f"{place}?revision={each}", each) for each in named])
+
+
 def answer_of(saved: SavedSelection) -> Selection:
-    """The answer as it was saved; Problem 409 for one that can't be read."""
+    """Answer as saved; Problem 409 for an unreadable one."""
     try:
         return decode(saved.result)
     except UnreadableReplyError as error:
         raise Problem(409, Sentence(UNREADABLE), [(("result",), str(error))]) from None
 
 
-UNREADABLE = N_("What was saved here can’t be read: parts are missing that the answers of every version have.")
+UNREADABLE = N_("This saved answer can’t be read: parts are missing that the answers of every version have.")
 
 
 def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) -> Reopened:
-    """Ask today's engine and catalogue again, and compare; what was saved stays as it is."""
+    """Saved selection with the answer of today's engine and catalogue, and the differences; changes nothing saved."""
     before = answer_of(saved)
     application, after, changes, problem = None, None, list[Difference](), None
     try:
@@ -232,7 +255,7 @@ def reopen(saved: SavedSelection, then: Catalogue | None, catalogue: Catalogue) 
 def _figures(
     before: Selection, application: Application | None, then: Catalogue | None, today: Catalogue
 ) -> list[FigureDifference] | None:
-    """Differences between two catalogues in the candidates and the listed motor; None where one is not kept."""
+    """Differences between two catalogues for the candidates and the listed motor; None if `then` is not kept."""
     if then is None or then is today:
         return None if then is None else []
     motor = application.requirements.motor if application else None

@@ -1,6 +1,6 @@
-"""Tables of axes on their way into the store: how long they may be, and axes with their answers out of their rows.
+"""Tables of axes to be stored: limits of their size, and axes with answers made of their rows.
 
-Arrow is imported by this module.
+This module imports Arrow.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ from hpn.tables.files import TableBounds
 from hpn.web.columns import draft_of
 
 WANTED = TableBounds(AXIS_INPUTS, most_rows=50_000, most_characters=4_000_000, takes=are_taken)
-"""Most rows and characters of a text whose columns are not named as `hpn fleet` names them."""
+"""Limits of a table whose columns are not named as in `hpn fleet`: rows and characters."""
 
 
 def drafts_in(
@@ -32,9 +32,9 @@ def drafts_in(
     origins: Mapping[str, Sequence[int]],
     catalogue: Catalogue,
 ) -> list[AxisDraft]:
-    """Axes of a table to be kept, all of them answered together; one with a wrong cell is open for that.
+    """Drafts of a table's axes, all answered together; an axis with a faulty cell is open.
 
-    `origins` are the rows of a table of cells that the phases of an axis stand in.
+    `origins` are the rows of the phases of each axis in a table of cells.
     """
     axes = axes_in(rows, faults)
     questions = [AxisQuestion(resolve(each.axis.application, {}), each.axis.ordering_code) for each in axes]
@@ -44,15 +44,15 @@ def drafts_in(
 
 def _draft(row: TableAxis, answer: AxisAnswer, numbers: Sequence[int]) -> AxisDraft:
     axis = row.axis
-    if row.faults and answer.status != "open":  # whatever the models make of it, a cell of it is wrong
+    if row.faults and answer.status != "open":  # a cell is faulty, even if the models accept the rest
         axis, answer = Axis(), AxisAnswer("open", catalogue_version=answer.catalogue_version)
     return replace(draft_of(axis, _placed(row.faults, answer, numbers)), name=row.name)
 
 
 def _placed(faults: Sequence[CellFault], answer: AxisAnswer, numbers: Sequence[int]) -> AxisAnswer:
-    """An answer whose faults name the columns of the table, and its rows where these are known."""
+    """Answer whose faults name the columns of the table, and its rows if these are known."""
     if not faults and answer.status == "open" and numbers:
-        faults = [located(0, each.location, each.told, each.code) for each in answer.faults]
+        faults = [located(0, each.location, each.wording, each.code) for each in answer.faults]
     if not faults:
         return answer
     faults_in_rows = (in_row(fault, numbers) for fault in faults[:MOST_FAULTS])

@@ -1,4 +1,4 @@
-"""Axes and answers as the columns of the store, and back: the store knows neither models nor the engine."""
+"""Conversion of axes and answers to columns of the store and back; the store knows neither models nor engine."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -28,33 +28,33 @@ def columns_of(answer: AxisAnswer) -> Json:
 
 
 def answer_in(columns: Mapping[str, Any]) -> AxisAnswer:
-    """Answer in its columns; a figure that an earlier version did not know is null."""
+    """Answer from its columns; a figure that an earlier version did not know is null."""
     return _answer(_encode({**columns, **{name: Raw(columns[name].encode()) for name in LISTS}}))
 
 
 def json_of(value: Mapping[str, Any]) -> bytes:
-    """JSON of an object with whatever a caller has sent in it."""
+    """JSON of an object with a caller's unchecked content."""
     return json.dumps(value, allow_nan=False, separators=(",", ":")).encode()
 
 
 def own_of(axis: SavedAxis) -> Json:
     """An axis's own part of its application."""
-    own: Json = json.loads(axis.application)  # numbers of any length, which the models refuse
+    own: Json = json.loads(axis.application)  # reads numbers of any length, which the models then refuse
     return own
 
 
 def without_of(axis: SavedAxis) -> tuple[str, ...]:
-    """Paths of the common values that do not hold for an axis."""
+    """Paths of the common values that don't apply to an axis."""
     return tuple(orjson.loads(axis.without))
 
 
 def resolved(axis: SavedAxis, common: Mapping[str, Any]) -> Resolved:
-    """The application of an axis of a document."""
+    """Application of an axis of a document, merged with the common values."""
     return resolve(own_of(axis), common, without_of(axis))
 
 
 def whole_of(axis: SavedAxis, common: Mapping[str, Any]) -> bytes:
-    """JSON of the application of an axis, by what its answer says is not asked: nothing is judged again."""
+    """JSON of the application of an axis; takes the inputs `not_asked` from its answer, so nothing is judged again."""
     not_asked = orjson.loads(axis.answer["not_asked"])
     return json_of(merged(own_of(axis), common, {*without_of(axis), *not_asked})[0])
 
@@ -66,13 +66,13 @@ def common_of(machine: Machine) -> Json:
 
 
 def drafts_of(axes: Sequence[Axis], common: Mapping[str, Any], catalogue: Catalogue) -> list[AxisDraft]:
-    """Axes to be kept, all of them answered together."""
+    """Drafts of axes, all answered together."""
     questions = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in axes]
     return [draft_of(axis, answer) for axis, answer in zip(axes, answers(questions, catalogue), strict=True)]
 
 
 def draft_of(axis: Axis, answer: AxisAnswer) -> AxisDraft:
-    """An axis to be kept with its answer."""
+    """Draft of an axis with its answer."""
     return AxisDraft(
         application=json_of(axis.application),
         phases=phases_of(axis.application),
@@ -86,7 +86,7 @@ def draft_of(axis: Axis, answer: AxisAnswer) -> AxisDraft:
 
 
 def frozen_of(machine: Machine, axes: Sequence[SavedAxis]) -> revision.Frozen:
-    """A document as it is, with these axes."""
+    """Frozen form of a document in its present state, with these axes."""
     common = common_of(machine)
     block = (machine.title, machine.reference, machine.author, machine.note)
     return revision.Frozen(*block, common, tuple(_frozen_axis(axis, common) for axis in axes))
@@ -107,7 +107,7 @@ def _frozen_axis(axis: SavedAxis, common: Mapping[str, Any]) -> revision.FrozenA
 
 
 def thawed(machine: Machine, line: RevisionLine, document: revision.Frozen) -> Machine:
-    """A document as a revision has it."""
+    """Document in the state of a revision."""
     items = tuple(
         SavedAxis(
             application=bytes(axis.application),
@@ -137,7 +137,7 @@ def thawed(machine: Machine, line: RevisionLine, document: revision.Frozen) -> M
 
 
 def revision_of(machine: Machine, label: str, *, author: str | None, note: str | None) -> RevisionDraft:
-    """Revision of a document as it is, which nobody has checked yet."""
+    """Revision of a document in its present state, not checked yet."""
     newest = machine.items[0].answer if machine.items else {}
     return RevisionDraft(
         label=label,

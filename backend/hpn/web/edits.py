@@ -1,4 +1,4 @@
-"""Changes of a machine's axes and common values as REST and the pages make them, and their effect on its gears."""
+"""Changes of a machine's axes and common values, by REST and pages, and their effect on its gears."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from starlette.requests import Request
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import AxisQuestion
 from hpn.documents.axis import Axis
-from hpn.documents.gears import Placed, gears_of
+from hpn.documents.gears import OrderAxis, gears_of, motor_of
 from hpn.documents.kinds import MachineKinds, Sought, kinds_of
 from hpn.documents.merge import resolve
 from hpn.store import AxisDraft, Change, Machine, SavedAxis
@@ -23,7 +23,7 @@ Json = dict[str, Any]
 
 
 class Effect(NamedTuple):
-    """Effect of a change: number of axes that it is about, those with another gear and without one, and masses."""
+    """Effect of a change: number of its axes, axes with another gear, axes without one, gear mass before and after."""
 
     axes: int
     other_gear: tuple[int, ...]
@@ -33,7 +33,7 @@ class Effect(NamedTuple):
 
 
 def named(machine: Machine, numbers: Sequence[int] | Literal["all"]) -> list[SavedAxis]:
-    """Axes of some numbers; Problem 422 for one that the machine hasn't."""
+    """Axes by their numbers; Problem 422 for an unknown number."""
     by_number = {axis.number: axis for axis in machine.items}
     wanted = list(by_number) if numbers == "all" else list(dict.fromkeys(numbers))
     if missing := [number for number in wanted if number not in by_number]:
@@ -47,13 +47,13 @@ FIELDS = ("name", "quantity", "note", "ordering_code", "without", "application")
 
 
 def own_values(axis: SavedAxis) -> dict[str, Any]:
-    """Own values of an axis as they are."""
+    """Present own values of an axis."""
     same = {name: getattr(axis, name) for name in ("name", "quantity", "note", "ordering_code")}
     return same | {"without": without_of(axis), "application": own_of(axis)}
 
 
 def after(axis: SavedAxis, patch: Mapping[str, Any]) -> dict[str, Any]:
-    """Own values of an axis after a merge patch; ValidationError where one that it changes is wrong."""
+    """Own values of an axis after a merge patch; ValidationError for an invalid new value."""
     now = own_values(axis)
     changed = {name: patched(now[name], value) for name, value in patch.items() if name in FIELDS}
     checked = Axis.model_validate({name: value for name, value in changed.items() if value is not None})
@@ -63,7 +63,7 @@ def after(axis: SavedAxis, patch: Mapping[str, Any]) -> dict[str, Any]:
 def drafted(
     axes: list[tuple[SavedAxis, dict[str, Any]]], common: Mapping[str, Any], catalogue: Catalogue
 ) -> list[AxisDraft]:
-    """Axes with other own values, all answered together."""
+    """Drafts of axes with other own values, all answered together."""
     questions = (AxisQuestion(resolve(v["application"], common, v["without"]), v["ordering_code"]) for _, v in axes)
     replies = answers_in_steps(questions, len(axes), catalogue)
     return [draft_of(Axis.model_construct(**v), answer) for (_, v), answer in zip(axes, replies, strict=True)]
@@ -76,9 +76,9 @@ async def replace_axis(
     values: Callable[[SavedAxis], dict[str, Any]],
     require: Callable[[Machine, SavedAxis], None],
 ) -> None:
-    """Give an axis other own values; `require` raises Problem 412 where it is no more as its maker has seen it.
+    """Give an axis other own values; `require` raises Problem 412 if the axis has changed since its editor saw it.
 
-    Raises Problem as `apply` does, and 404 for an axis that is not there.
+    Raises Problem as `apply` does, and 404 for an unknown axis.
     """
     catalogue: Catalogue = request.app.state.catalogue
 
@@ -98,21 +98,23 @@ def effect_of(machine: Machine, drafts: Mapping[int, AxisDraft], catalogue: Cata
     now = {axis.number: axis for axis in machine.items}
     other = [n for n, draft in drafts.items() if draft.answer["designation"] != now[n].answer["designation"]]
     without = [n for n, draft in drafts.items() if draft.answer["selected"] is None and draft.ordering_code is None]
-    before = gears_of(map(_placed, now.items()), catalogue).weight_kg
-    then = gears_of(map(_placed, {**now, **drafts}.items()), catalogue).weight_kg
+    before, then = (
+        gears_of((placed(number, axis) for number, axis in axes.items()), catalogue).weight_kg
+        for axes in (now, {**now, **drafts})
+    )
     return Effect(len(drafts), tuple(other), tuple(without), before, then)
 
 
-def _placed(item: tuple[int, AxisDraft]) -> Placed:
-    number, axis = item
-    return Placed(number, axis.quantity, axis.ordering_code, axis.answer["selected"])
+def placed(number: int, axis: AxisDraft) -> OrderAxis:
+    """Data of an axis that count for the order of gears."""
+    return OrderAxis(number, axis.quantity, axis.ordering_code, axis.answer["selected"], motor_of(axis.application))
 
 
 # --- Fewest kinds -----------------------------------------------------------------------------------------------------
 
 
 def kinds_in(machine: Machine, catalogue: Catalogue, most: int | None = None) -> MachineKinds:
-    """Fewest kinds of gears for the axes of a machine that have an answer."""
+    """Fewest kinds of gears for the answered axes of a machine."""
     common = common_of(machine)
     pairs = ((axis, resolved(axis, common).application) for axis in machine.items)
     sought = [
@@ -127,7 +129,7 @@ def kinds_in(machine: Machine, catalogue: Catalogue, most: int | None = None) ->
 
 
 class AxesPatch(msgspec.Struct, frozen=True):
-    """Merge patch of some axes, for the values that another merge patch has left there."""
+    """Merge patch of some axes; applies only while they still have the values of the merge patch `left`."""
 
     numbers: tuple[int, ...]
     patch: Json
@@ -135,7 +137,7 @@ class AxesPatch(msgspec.Struct, frozen=True):
 
 
 class Undo(msgspec.Struct, frozen=True, omit_defaults=True):
-    """Inverse of a change: patches, common values as they are now and were before, axes to remove and to bring back."""
+    """Inverse of a change: patches, common values after and before it, axes to remove, and axes to restore."""
 
     patches: tuple[AxesPatch, ...] = ()
     common: tuple[Json, Json] | None = None
@@ -145,7 +147,7 @@ class Undo(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class Plan(NamedTuple):
-    """A change before it is made: its inverse, its effect, and the gears of its axes by their numbers."""
+    """Planned change, its inverse, its effect, and the gears of its axes by their numbers."""
 
     change: Change
     undo: Undo
@@ -154,7 +156,7 @@ class Plan(NamedTuple):
 
 
 class OvertakenError(Exception):
-    """Others have changed something since: the axes by their numbers, none where it is the machine itself."""
+    """Others have changed the same since: axes by their numbers, or, without any, common values of the machine."""
 
     def __init__(self, numbers: Sequence[int] = ()) -> None:
         super().__init__("others have changed this since")
@@ -164,7 +166,7 @@ class OvertakenError(Exception):
 def plan_patches(
     machine: Machine, patches: Sequence[tuple[SavedAxis, Json]], catalogue: Catalogue, by: str | None
 ) -> Plan:
-    """A merge patch of each of some axes."""
+    """Plan of merge patches, one for each axis."""
     drafts = drafted([(axis, after(axis, patch)) for axis, patch in patches], common_of(machine), catalogue)
     changed = [(axis.number, axis.version, draft) for (axis, _), draft in zip(patches, drafts, strict=True)]
     back: dict[bytes, tuple[list[int], Json, Json]] = {}
@@ -179,7 +181,7 @@ def plan_patches(
 
 
 def plan_common(machine: Machine, common: Json, catalogue: Catalogue, by: str | None) -> Plan:
-    """Other common values."""
+    """Plan of other common values."""
     replies = answered(machine, common, catalogue)
     values = {"common": msgspec.json.encode(common).decode()}
     axes = {
@@ -191,9 +193,9 @@ def plan_common(machine: Machine, common: Json, catalogue: Catalogue, by: str | 
 
 
 def plan_kinds(machine: Machine, count: int, catalogue: Catalogue, by: str | None) -> Plan:
-    """The step with a number of kinds: each axis that it changes takes size and ratio of its gear as its own values.
+    """Plan of the step with `count` kinds: a changed axis takes size and ratio of its new gear as own values.
 
-    Raises Problem 422 for a number of kinds that is no step.
+    Raises Problem 422 if no step has this number of kinds.
     """
     step = next((each for each in kinds_in(machine, catalogue).kinds if each.count == count), None)
     if step is None:
@@ -208,7 +210,7 @@ def plan_kinds(machine: Machine, count: int, catalogue: Catalogue, by: str | Non
 
 
 def plan_copies(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> Change:
-    """The same axes once more, behind the others."""
+    """Change that appends copies of axes."""
     same = AxisDraft.__dataclass_fields__
     return Change(machine.version, by, new=[AxisDraft(**{n: getattr(axis, n) for n in same}) for axis in axes])
 
@@ -216,9 +218,9 @@ def plan_copies(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> 
 def plan_addition(
     machine: Machine, name: str | None, like: SavedAxis | None, catalogue: Catalogue, by: str | None
 ) -> Change:
-    """One more axis behind the others: without values of its own, or with those of another axis.
+    """Change that appends an axis: without own values, or with those of the axis `like`.
 
-    Raises ValidationError for a name that can't be.
+    Raises ValidationError for an invalid name.
     """
     if like is None:
         new = drafts_of([Axis(name=name)], common_of(machine), catalogue)
@@ -229,7 +231,7 @@ def plan_addition(
 
 
 def plan_removal(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> tuple[Change, Undo]:
-    """Axes go; their numbers bring them back."""
+    """Change that removes axes, and its inverse, which restores them by their numbers."""
     gone = [(axis.number, axis.version) for axis in axes]
     return Change(machine.version, by, removed=gone), Undo(removed=tuple(n for n, _ in gone), order=machine.order)
 
@@ -237,9 +239,9 @@ def plan_removal(machine: Machine, axes: Sequence[SavedAxis], by: str | None) ->
 def plan_undo(
     machine: Machine, undo: Undo, gone: Sequence[SavedAxis], catalogue: Catalogue, by: str | None
 ) -> tuple[Change, Undo]:
-    """The inverse of a change, and its own inverse; raises OvertakenError where others have changed the same since.
+    """Change that undoes another, and its own inverse; raises OvertakenError if others have changed the same since.
 
-    `gone` are the axes to be brought back.
+    `gone` are the axes to be restored.
     """
     there = {axis.number: axis for axis in machine.items}
     if undo.common is not None:
@@ -262,7 +264,7 @@ def plan_undo(
 
 
 def inverse(target: Any, patch: Mapping[str, Any]) -> Json:
-    """Merge patch that takes a value back to what it was before another one."""
+    """Merge patch that undoes another one on a value; `target` is the value before both."""
     back: Json = {}
     for name, value in patch.items():
         before = target.get(name) if isinstance(target, Mapping) else None
@@ -272,7 +274,7 @@ def inverse(target: Any, patch: Mapping[str, Any]) -> Json:
 
 
 def _is_left(own: Json, patch: Json) -> bool:
-    """True where an axis has the values that a patch has left."""
+    """True if an axis still has the values of a patch."""
     return all(_same(own.get(name), patched(own.get(name), value)) for name, value in patch.items())
 
 

@@ -1,8 +1,7 @@
-"""Fleets of axes, sized in processes beside the service, which end with it: what one takes, and where it fails, is its
-own.
+"""Fleets of axes, sized in processes beside the service, which end with it: their memory and failures don't affect it.
 
-Its files stand in a folder that is locked as long as the service holds it: the next service knows what a killed one
-has left.
+The files of a fleet are in a folder that stays locked while the service uses it: an unlocked folder is the leftover of
+a killed service.
 """
 
 import asyncio
@@ -35,13 +34,13 @@ Kind = Literal["answers", "rejected", "candidates"]
 MARKS = {".parquet": (b"PAR1", b"PAR1"), ".csv.gz": (b"\x1f\x8b", b"")} | dict.fromkeys(
     (".arrow", ".arrows", ".feather"), (b"ARROW1", b"ARROW1")
 )
-"""Beginning and end of files of a format."""
+"""First and last bytes of files of a format."""
 
 STREAM = b"\xff\xff\xff\xff"
-"""Beginning of an Arrow stream; it may end in any way."""
+"""First bytes of an Arrow stream; its last bytes are not fixed."""
 
 HEAD_BYTES = 2_000_000
-"""Beginning of a text, in which its first axis has to stand."""
+"""Size of the beginning of a text, which must contain the column `axis`."""
 
 PREFIX = "hpn-fleet-"
 END_SECONDS = 5
@@ -54,17 +53,17 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Tables:
-    """Table of a fleet in its folder, under a name of the service, and what the caller calls it."""
+    """Table of a fleet, in its folder under the service's file name, and the caller's name for it."""
 
     input: Path
     input_name: str = "input"
     ignored: tuple[str, ...] = ()
-    """Columns that are left out."""
+    """Columns to be left out."""
 
 
 @asynccontextmanager
 async def workplace(request: Request) -> AsyncIterator[Path]:
-    """A folder for the files of one fleet, gone at the end."""
+    """Yield a folder for the files of one fleet; it is removed at the end."""
     settings: Settings = request.app.state.settings
     with spool.usable(), _under_way(request.app.state):
         folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=settings.spool_folder))
@@ -77,21 +76,21 @@ async def workplace(request: Request) -> AsyncIterator[Path]:
 
 @contextmanager
 def _under_way(state: State) -> Iterator[None]:
-    """Have the end of the service wait for the end of this task."""
+    """Make the shutdown of the service wait for this task; Problem 503 if the shutdown cancels it."""
     task = asyncio.current_task()
     state.fleets_under_way.add(task)
     try:
         yield
-    except asyncio.CancelledError:  # nothing but the end of the service cancels a request
+    except asyncio.CancelledError:  # only the shutdown of the service cancels a request
         raise Problem.later("the service ends before the table is sized; send it again", RETRY_SECONDS) from None
     finally:
         state.fleets_under_way.discard(task)
 
 
 async def ended(state: State) -> None:
-    """Wait until fleets whose requests were cancelled at the end have ended, and nothing is left of their folders.
+    """Wait until fleets cancelled by the shutdown have ended and removed their folders, at most END_SECONDS.
 
-    The server ends the process right after the application, whatever its tasks do.
+    The server ends the process right after the application, even if tasks still run.
     """
     if state.fleets_under_way:
         await asyncio.wait(set(state.fleets_under_way), timeout=END_SECONDS)
@@ -99,8 +98,8 @@ async def ended(state: State) -> None:
 
 @contextmanager
 def locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
-    """Hold the lock of a folder, which ends with this process; OSError where there is no wait and another holds it."""
-    lock = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)  # anything else could wait: a FIFO for ever
+    """Hold the lock of a folder; it ends with this process. OSError without `wait` if another process holds it."""
+    lock = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)  # anything else could block, a FIFO for ever
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
         yield
@@ -109,31 +108,31 @@ def locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
 
 
 def remove_leftovers(settings: Settings) -> None:
-    """Remove folders of services that were killed; one that is empty may have been made a moment ago."""
+    """Remove folders of killed services; an empty folder is kept, as it may have just been created."""
     for folder in Path(settings.spool_folder or tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        with suppress(OSError), locked(folder, wait=False):  # else it is held, or somebody else's
+        with suppress(OSError), locked(folder, wait=False):  # raised if it is locked or another user's
             if any(folder.iterdir()):
                 shutil.rmtree(folder, ignore_errors=True)
 
 
 class Files(NamedTuple):
-    """Files of a fleet by kind, and the columns that were ignored though nobody asked for that."""
+    """Files of a fleet by kind, and columns that were ignored without the caller's request."""
 
     by_kind: Mapping[Kind, Path]
     ignored: tuple[str, ...]
 
 
 def bounds_of(settings: Settings) -> Bounds:
-    """Bounds of the processes that size fleets; their time is measured by the service, which ends one sooner."""
+    """Bounds of the processes that size fleets; their time is twice the limit at which the service itself ends them."""
     return Bounds(settings.fleet_memory_bytes, 2 * settings.fleet_seconds)
 
 
 async def size_fleet(request: Request, tables: Tables, *, candidates: bool = False) -> Files:
-    """Size the axes of a table in a workplace; gives files in the input's format.
+    """Size the axes of a table in a workplace; return files in the input's format.
 
-    Raises Problem 422 for a table that can't be used, 413 for what takes too much, 503 where too many others wait or
-    for what takes too long, the wait for its turn included. A client that leaves ends the work. The body of the request
-    has been read: a place that was taken before would be free to take, by a body that drips.
+    Raises Problem 422 for an unusable table, 413 for a table that takes too much memory or space, 503 if too many
+    others wait or the work takes too long, the wait for its turn included. The work ends when the client leaves. The
+    body of the request must have been read: otherwise a slow body would occupy a place.
     """
     settings: Settings = request.app.state.settings
     pool = pool_of(request, "fleets")
@@ -153,9 +152,9 @@ async def size_fleet(request: Request, tables: Tables, *, candidates: bool = Fal
 
 
 async def worked(request: Request, work: Callable[[], T], folder: Path | None = None) -> T:
-    """Result of work in a process that sizes fleets, whose files may take so much in a folder.
+    """Result of work in a process that sizes fleets; the files in `folder` may take `maximum_spool_bytes`.
 
-    Raises Problem as `size_fleet` says.
+    Raises Problem 413 and 503 as `size_fleet` does.
     """
     settings: Settings = request.app.state.settings
     try:
@@ -195,7 +194,7 @@ def _too_much(error: EndedError, settings: Settings) -> Problem:
 
 
 def _in_words_of_the_caller(text: str, tables: Tables) -> str:
-    """A refusal with the caller's names of the files."""
+    """Refusal with the caller's name of the file, shortened to DETAIL_LENGTH characters."""
     text = text.replace(str(tables.input), tables.input_name)
     return text if len(text) <= DETAIL_LENGTH else f"{text[:DETAIL_LENGTH]}…"
 
@@ -209,7 +208,7 @@ def _size_of(folder: Path) -> int:
 
 
 def _require_table(tables: Tables) -> None:
-    """Raise Problem 422 for a file that a look shows to be no table of axes: no process is started for it."""
+    """Raise Problem 422 for a file that is no table of axes by its first and last bytes, before a process starts."""
     path, name = tables.input, tables.input_name
     suffix = suffix_of(path) or ""
     size, mark = path.stat().st_size, MARKS.get(suffix)
@@ -223,7 +222,7 @@ def _require_table(tables: Tables) -> None:
     if mark is not None and (head, end) != mark and not is_stream:
         text = f"can’t be read as {suffix[1:]}: it does not begin and end as such a file"
         raise Problem(422, f"{name}: {text}")
-    if mark is None and (said := wrong_encoding(head)):
-        raise Problem(422, f"{name}: {said}")
+    if mark is None and (reason := wrong_encoding(head)):
+        raise Problem(422, f"{name}: {reason}")
     if mark is None and b"axis" not in head:
         raise Problem(422, f"{name}: column axis is missing")

@@ -1,4 +1,4 @@
-"""Revisions as they are frozen, of machines and of selections: a selection's keeps its whole reply, too."""
+"""Freezing of revisions of machines and selections; a selection's revision contains its whole reply, too."""
 
 from dataclasses import replace
 from typing import Any
@@ -7,7 +7,9 @@ from starlette.requests import Request
 
 from hpn.catalogue import Catalogue
 from hpn.documents.revision import RevisionBlock
-from hpn.store import Draft, LabelTakenError, Machine, Once, RevisionDraft, RevisionLine, SavedAxis
+from hpn.store import Draft, LabelTakenError, Machine, Once, RevisionDraft, RevisionLine, SavedAxis, Store
+from hpn.store.records import DocumentKind
+from hpn.web.archive import no_revision
 from hpn.web.columns import revision_of
 from hpn.web.door.conditions import other_state
 from hpn.web.door.observation import note
@@ -19,7 +21,7 @@ from hpn.words.wording import N_, Sentence
 SAVE_FIRST = N_("nobody has saved this machine yet: save it first, then freeze a revision")
 TAKEN = N_("there is a revision {label} already: choose another label")
 HEAD = ("selected", "designation", "status", "utilisation", "engine_version", "catalogue_version")
-"""Columns of an answer that are columns of a selection's line."""
+"""Columns of an answer that a selection's line has, too."""
 
 
 async def freeze(
@@ -30,10 +32,11 @@ async def freeze(
     draft: Draft | None = None,
     version: int | None = None,
 ) -> str:
-    """Label of the new revision of a document's working copy, or of a selection's that becomes what a draft has.
+    """Freeze a document's working copy, or a selection with the content of `draft`; label of the new revision.
 
-    Problem 403, 404, 409 for a taken label, what nobody has saved, and a selection that is open, 412 for another
-    state than `If-Match` names or another version than one given, 422 beyond the bounds, 410 and 422 for a used key.
+    Raises Problem 403, 404, 409 for a taken label, an unsaved document or an open selection, 412 if `If-Match` names
+    another state or `version` is another, 422 beyond the limits, 410 and 422 for a used idempotency key, 503 if others
+    keep changing the document.
     """
     for _ in range(TRIES):
         machine = await editable(request, id)
@@ -43,10 +46,12 @@ async def freeze(
             raise other_state()
         if machine.saved is None:
             raise Problem(409, Sentence(SAVE_FIRST))
-        made = await compute(request, "batches", _frozen, machine, block, request.app.state.catalogue, draft)
-        made = replace(made, created_by=request.state.api_key)
+        revision = await compute(request, "batches", _frozen, machine, block, request.app.state.catalogue, draft)
+        revision = replace(revision, created_by=request.state.api_key)
         try:
-            label: str | None = await guarded(request.app.state.store.freeze(id, machine.version, made, LIMITS, once))
+            label: str | None = await guarded(
+                request.app.state.store.freeze(id, machine.version, revision, LIMITS, once)
+            )
         except LabelTakenError:
             raise Problem(409, Sentence(TAKEN, {"label": block.label})) from None
         if label is not None:
@@ -60,20 +65,20 @@ def _frozen(machine: Machine, block: RevisionBlock, catalogue: Catalogue, draft:
         machine = of_today(machine, catalogue)
     else:
         machine = replace(machine, common="{}", items=(_axis(machine.items[0], draft),))
-    made = revision_of(machine, block.label, author=block.author, note=block.note)
-    made = replace(made, checked=block.checked, approved=block.approved)
-    if made.catalogue_version == catalogue.version:
-        made = replace(made, catalogue=catalogue)
+    revision = revision_of(machine, block.label, author=block.author, note=block.note)
+    revision = replace(revision, checked=block.checked, approved=block.approved)
+    if revision.catalogue_version == catalogue.version:
+        revision = replace(revision, catalogue=catalogue)
     if machine.kind == "machine":
-        return made
+        return revision
     (axis,) = machine.items
     head: dict[str, Any] = {name: axis.answer[name] for name in HEAD} | {"ordering_code": axis.ordering_code}
     result = selection_of(machine, axis, catalogue) if draft is None else draft.result
-    return replace(made, result=result, head=head, axis=None if draft is None else axis)
+    return replace(revision, result=result, head=head, axis=None if draft is None else axis)
 
 
 def _axis(axis: SavedAxis, draft: Draft) -> SavedAxis:
-    """The axis of a selection with another application."""
+    """Axis of a selection with the application and answer of a draft."""
     return replace(
         axis,
         application=draft.application,
@@ -84,9 +89,10 @@ def _axis(axis: SavedAxis, draft: Draft) -> SavedAxis:
     )
 
 
-async def revision(request: Request, id: str, label: str) -> tuple[RevisionLine, bytes]:
-    """The revision of a label in any case, and what is frozen in it; Problem 404."""
-    frozen: tuple[RevisionLine, bytes] | None = await request.app.state.store.revision(id, label)
+async def revision(request: Request, id: str, label: str, kind: DocumentKind = "machine") -> tuple[RevisionLine, bytes]:
+    """Revision by its label in upper or lower case, and its frozen content; Problem 404."""
+    store: Store = request.app.state.store
+    frozen = await store.revision(id, label)
     if frozen is None:
-        raise Problem(404, f"there is no revision {label[:20]!r}")
+        raise no_revision(f"/{kind}s/{id}", label, await store.revisions(id))
     return frozen

@@ -1,6 +1,6 @@
-"""Work on the axes of a machine in steps: counted for its page, and given up once nobody waits for it any more.
+"""Work on the axes of a machine in steps: counted for its page, and given up when its client has left.
 
-What is given up has saved nothing: a change is one transaction behind the last step.
+Work that is given up has saved nothing: a change is one transaction after the last step.
 """
 
 import asyncio
@@ -23,32 +23,32 @@ from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence
 
 STEP = 200
-"""Axes that are answered between two looks at whether somebody still waits."""
+"""Axes that are answered between two checks that the client still waits."""
 
 EVENTS = "text/event-stream"
-"""Media type of an answer that counts; Starlette compresses no such answer, which would hold the count back."""
+"""Media type of an answer that counts; Starlette doesn't compress it, as compression would delay the count."""
 
 PAUSE_SECONDS = 0.2
 COUNTED, SAVING = N_("{done} of {all}"), N_("saving")
 
 
 class GivenUpError(Exception):
-    """Nobody waits for the work any more."""
+    """The client no longer waits for the work."""
 
 
 class WorkProgress:
-    """Count of the axes that are answered, of how many."""
+    """Count of answered axes, and their total."""
 
     def __init__(self) -> None:
         self.done, self.of, self.is_saving = 0, 0, False
         self._given_up = threading.Event()
 
     def give_up(self) -> None:
-        """Have the work end at its next step, if it is not saving yet."""
+        """End the work at its next step, unless it is saving already."""
         self._given_up.set()
 
     def count(self, done: int, of: int, *, is_saving: bool = False) -> None:
-        """Say how far the work is; raises GivenUpError where nobody waits for it."""
+        """Record the progress of the work; raises GivenUpError if the work is given up."""
         if self._given_up.is_set():
             raise GivenUpError
         self.done, self.of, self.is_saving = done, of, is_saving
@@ -59,7 +59,7 @@ _PROGRESS: ContextVar[WorkProgress | None] = ContextVar("progress", default=None
 
 @contextmanager
 def given_up_at_end() -> Iterator[None]:
-    """Have what a request has begun end with it, at the next step."""
+    """Give up the work of a request at the request's end."""
     progress = WorkProgress()
     token = _PROGRESS.set(progress)
     try:
@@ -70,7 +70,7 @@ def given_up_at_end() -> Iterator[None]:
 
 
 def answers_in_steps(questions: Iterable[AxisQuestion], count: int, catalogue: Catalogue) -> list[AxisAnswer]:
-    """Answers to so many axes; raises GivenUpError where nobody waits for them any more."""
+    """Answers to `count` questions; raises GivenUpError if the work is given up."""
     progress, rest, replies = _PROGRESS.get(), iter(questions), list[AxisAnswer]()
     while step := list(islice(rest, STEP)):
         if progress is not None:
@@ -80,13 +80,13 @@ def answers_in_steps(questions: Iterable[AxisQuestion], count: int, catalogue: C
 
 
 def begin_to_save() -> None:
-    """Say that from now on the change is made; raises GivenUpError where nobody waits for it."""
+    """Record that the change is being saved; raises GivenUpError if the work is given up."""
     if (progress := _PROGRESS.get()) is not None:
         progress.count(progress.of, progress.of, is_saving=True)
 
 
 class CountedAnswer(StreamingResponse):
-    """Events that count the axes of a change, the last of which has its page; the work ends when the client leaves."""
+    """Events that count the axes of a change; the last contains its page. The work ends when the client leaves."""
 
     def __init__(self, request: Request, work: Callable[[], Awaitable[Response]]) -> None:
         self._request, self._work, self._progress = request, work, WorkProgress()
@@ -94,7 +94,7 @@ class CountedAnswer(StreamingResponse):
         super().__init__(self._pieces(), media_type=EVENTS, headers=headers)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send them while the client is there; what is being saved then is saved."""
+        """Send the events until the client leaves; a change that is being saved then is completed."""
         context = copy_context()
         context.run(_PROGRESS.set, self._progress)
         self._working = asyncio.create_task(self._result(), context=context)
@@ -114,17 +114,17 @@ class CountedAnswer(StreamingResponse):
     async def _pieces(self) -> AsyncIterator[bytes]:
         reader: Reader = self._request.state.reader
         while not self._working.done():
-            yield _event(_told(self._progress, reader))
+            yield _event(_status(self._progress, reader))
             await asyncio.wait({self._working}, timeout=PAUSE_SECONDS)
         if (response := self._working.result()) is not None:
             yield _event({"status": response.status_code, "page": bytes(response.body).decode()})
 
 
-def _event(said: dict[str, object]) -> bytes:
-    return b"data: " + msgspec.json.encode(said) + b"\n\n"
+def _event(fields: dict[str, object]) -> bytes:
+    return b"data: " + msgspec.json.encode(fields) + b"\n\n"
 
 
-def _told(progress: WorkProgress, reader: Reader) -> dict[str, object]:
+def _status(progress: WorkProgress, reader: Reader) -> dict[str, object]:
     values = {"done": reader.exact(progress.done), "all": reader.exact(progress.of)}
-    text = reader.told(Sentence(SAVING) if progress.is_saving else Sentence(COUNTED, values))
-    return {"done": progress.done, "of": progress.of, "saving": progress.is_saving, "told": text}
+    text = reader.sentence(Sentence(SAVING) if progress.is_saving else Sentence(COUNTED, values))
+    return {"done": progress.done, "of": progress.of, "saving": progress.is_saving, "text": text}

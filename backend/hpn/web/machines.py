@@ -1,12 +1,11 @@
-"""Machines as they are read and changed, for the API and the pages alike: each change for the state that it was made
-for, again where somebody else was faster elsewhere in the machine."""
+"""Reading and changing of machines, for both API and pages: each change applies to the state that it was made for, and
+is repeated if somebody else has changed another part of the machine meanwhile."""
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from starlette.datastructures import State
 from starlette.requests import Request
 
 from hpn import ENGINE_VERSION
@@ -32,10 +31,10 @@ from hpn.words.wording import N_, Sentence
 
 LIMITS = Limits(MOST_AXES, MOST_PHASES, MOST_REVISIONS)
 TRIES, RETRY_SECONDS = 8, 1
-"""Times that a change is made anew where somebody else was faster, before its maker is asked to try again."""
+"""Attempts at a change that others overtake, and the time after which the caller should then try again."""
 
 FEW_AXES = 100
-"""Axes that are answered on a worker for pages; more have a worker of their own."""
+"""Number of axes up to which a change is computed on a worker of `pages`, else of `batches`."""
 
 EXCESS = {
     "axes": N_("a machine may have {most} axes at most"),
@@ -46,19 +45,19 @@ NOT_YOURS = N_("Only the key that calculated this machine may see it and save it
 
 
 def gone(id: str) -> Problem:
-    """There is no such document."""
+    """Problem 404 for an unknown document."""
     return Problem(404, f"there is no machine {id[:60]!r}; it may have been deleted, or nobody has saved it for a day")
 
 
 def no_axis(number: int) -> Problem:
-    """There is no such axis."""
+    """Problem 404 for an unknown axis."""
     return Problem(404, f"the machine has no axis {number}; it may have been removed")
 
 
-async def found(
+async def machine_of(
     request: Request, id: str, numbers: Sequence[int] | None = None, kind: DocumentKind | None = None
 ) -> Machine:
-    """A document with its axes, or those of some numbers; Problem 404, and 403 for one that another key calculates."""
+    """Document with all axes or those of `numbers`; Problem 404, and 401 or 403 as `require_seen` raises."""
     machine: Machine | None = await request.app.state.store.find_machine(id, kind, numbers)
     if machine is None:
         raise gone(id)
@@ -67,7 +66,7 @@ async def found(
 
 
 def require_seen(request: Request, machine: Machine) -> None:
-    """Raise Problem 403 for another key than the one that calculated a machine that nobody has saved, 401 without."""
+    """Raise Problem 403 for an unsaved machine that another key calculated, 401 without a key."""
     if machine.saved is not None or machine.owner is None or not request.app.state.gate.has_keys:
         return
     if request.state.api_key is None:
@@ -77,17 +76,15 @@ def require_seen(request: Request, machine: Machine) -> None:
 
 
 async def editable(request: Request, id: str, numbers: Sequence[int] | None = None) -> Machine:
-    """The same for whoever may change it: Problem 403 without its key."""
-    machine = await found(request, id, numbers)
-    state: State = request.app.state
-    if state.gate.has_keys:
-        state.gate.require_owner(request, machine.owner)
+    """Document as of `found` that the caller may change; Problem 403 without its key."""
+    machine = await machine_of(request, id, numbers)
+    request.app.state.gate.require_owner(request, machine.owner)
     return machine
 
 
 async def axis_of(request: Request, id: str, number: int) -> tuple[Machine, SavedAxis]:
-    """An axis and its document without the other axes; Problem 404."""
-    machine = await found(request, id, [number])
+    """Document without its other axes, and the axis; Problem 404."""
+    machine = await machine_of(request, id, [number])
     if not machine.items:
         raise no_axis(number)
     return machine, machine.items[0]
@@ -100,19 +97,19 @@ async def apply(
     numbers: Sequence[int] | None = None,
     once: Once | None = None,
 ) -> list[int]:
-    """Numbers of the axes that are new or back after a change, which is made for the document with some of its axes.
+    """Change a document; numbers of the axes that are new or restored. `make` gets the document with axes of `numbers`.
 
-    `make` raises Problem where it can't be made, 412 where `If-Match` names another state. Raises Problem 403, 404,
-    410, 422, and 503 where others are faster again and again.
+    `make` raises Problem if the change is impossible, 412 if `If-Match` names another state. Raises Problem 403, 404,
+    410, 422, and 503 if others overtake every attempt.
     """
     if once is not None and (before := await made_before(request, once)) is not None:
         return order_of(before)
     for _ in range(TRIES):
         machine = await editable(request, id, numbers)
         few = len(machine.items) <= FEW_AXES
-        made = await compute(request, "pages" if few else "batches", make, machine)
+        change = await compute(request, "pages" if few else "batches", make, machine)
         begin_to_save()
-        done = await guarded(request.app.state.store.change(id, made, LIMITS, once))
+        done = await guarded(request.app.state.store.change(id, change, LIMITS, once))
         if done is not None:
             note(request, machine=id)
             numbers_done: list[int] = done
@@ -121,13 +118,16 @@ async def apply(
 
 
 async def made_before(request: Request, once: Once) -> str | None:
-    """Answer that an idempotency key has made of its document, whatever state the retry names; Problem 422 and 410."""
-    made = await guarded(request.app.state.store.made_by(once))
-    return None if made is None else made.part or "[]"
+    """Earlier answer under an idempotency key, None if the key is new; the retry's `If-Match` is ignored.
+
+    Raises Problem 422 and 410 as `guarded` does.
+    """
+    document = await guarded(request.app.state.store.made_by(once))
+    return None if document is None else document.part or "[]"
 
 
 async def guarded(writing: Any) -> Any:
-    """Result of the store; Problem 422 or 410 for a key that was used before, and for more than there may be."""
+    """Result of the store; Problem 422 or 410 for a key that was used before, 422 beyond a limit."""
     try:
         return await writing
     except KeyReusedError as error:
@@ -139,14 +139,14 @@ async def guarded(writing: Any) -> Any:
 
 
 def once_of(request: Request, body: bytes) -> Once | None:
-    """Idempotency key of a request with the fingerprint of its content."""
+    """Idempotency key of a request with the fingerprint of its path and body; None without a key."""
     key = idempotency_key(request)
     path = request.scope["path"].encode()
     return None if key is None else Once(key, hashlib.sha256(path + b"\n" + body).hexdigest())
 
 
 def author_of(request: Request, machine: Machine) -> str | None:
-    """Key of whoever changes a document, else the author as typed."""
+    """Name of the caller's key, else the document's author as typed."""
     key: str | None = request.state.api_key
     return key or machine.author
 
@@ -155,17 +155,17 @@ def author_of(request: Request, machine: Machine) -> str | None:
 
 
 def tag_of(machine: Machine) -> str:
-    """Entity tag of a document: of its title block, common values, order and set of axes."""
+    """Entity tag of a document's title block, common values, order and set of axes."""
     return etag_of(f"document {machine.id} {machine.version}".encode())
 
 
 def axis_tag(machine: Machine, axis: SavedAxis) -> str:
-    """Entity tag of an axis: of its own values."""
+    """Entity tag of an axis's own values."""
     return etag_of(f"axis {machine.id} {axis.number} {axis.version}".encode())
 
 
 def require_document(request: Request, machine: Machine) -> None:
-    """Raise Problem 412 where `If-Match` names another state of a document."""
+    """Raise Problem 412 if `If-Match` names another state of a document."""
     require_match(request, tag_of(machine))
 
 
@@ -173,7 +173,7 @@ def require_document(request: Request, machine: Machine) -> None:
 
 
 def answered(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) -> list[tuple[int, int, Answer]]:
-    """Answers of the axes of a document under common values, as a change has them."""
+    """Number, version and answer of each axis of a document under other common values, for a change."""
     questions = (AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in machine.items)
     replies = answers_in_steps(questions, len(machine.items), catalogue)
     return [
@@ -182,7 +182,7 @@ def answered(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) 
 
 
 def selection_of(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> bytes:
-    """JSON of the selection of an axis; Problem 409 for one that is open."""
+    """JSON of the selection of an axis; Problem 409 for an open axis."""
     application = resolved(axis, common_of(machine))
     if application.application is None:
         faults = [Fault(location, sentence.text, code) for location, sentence, code in application.faults]
@@ -194,7 +194,7 @@ def selection_of(machine: Machine, axis: SavedAxis, catalogue: Catalogue) -> byt
 
 
 def of_today(machine: Machine, catalogue: Catalogue) -> Machine:
-    """A document whose axes have the answers of today's engine and catalogue."""
+    """Document whose axes have the answers of today's engine and catalogue."""
     today = (ENGINE_VERSION, catalogue.version)
     if all((axis.answer["engine_version"], axis.answer["catalogue_version"]) == today for axis in machine.items):
         return machine
@@ -204,7 +204,7 @@ def of_today(machine: Machine, catalogue: Catalogue) -> Machine:
 
 
 def patched(target: Any, patch: Any) -> Any:
-    """A value after a JSON merge patch (RFC 7396)."""
+    """Value after a JSON merge patch (RFC 7396)."""
     if not isinstance(patch, dict):
         return patch
     result = dict(target) if isinstance(target, dict) else {}

@@ -1,4 +1,4 @@
-"""Tables of motors on their way into a list: how long they may be, and motors out of their rows."""
+"""Tables of motors for a list: limits of their size, and motors made of their rows."""
 
 from collections.abc import Sequence
 
@@ -8,20 +8,21 @@ from hpn.application import MotorEntry
 from hpn.application.faults import sentences_of
 from hpn.tables.answers import answered
 from hpn.tables.files import TableBounds
-from hpn.tables.motors import MOTORS
+from hpn.tables.motor_inputs import MOTORS
+from hpn.tables.motor_points import POINT
 from hpn.tables.reading import Reading, reading_of
 from hpn.tables.table import Table
 from hpn.web.motor_lists import MOST_LISTED
 from hpn.words.wording import N_, Sentence
 
-WANTED = TableBounds(MOTORS, most_rows=MOST_LISTED + 1000, most_characters=2_000_000)
-"""Most rows and characters of a table of motors, heads and titles among them."""
+WANTED = TableBounds(MOTORS, most_rows=4 * MOST_LISTED, most_characters=2_000_000)
+"""Limits of a table of motors: rows, with headings and titles, and characters."""
 
 
-def read_answered(content: bytes, given: Sequence[str]) -> tuple[Reading, tuple[Sentence, ...]]:
-    """Reading of a file by answers of a program, and what is wrong with these; no unit is assumed."""
+def read_answered(content: bytes, texts: Sequence[str]) -> tuple[Reading, tuple[Sentence, ...]]:
+    """Reading of a file with a program's answers, and faults of these answers; no unit is assumed."""
     return answered(
-        given,
+        texts,
         MOTORS,
         lambda choices: reading_of(content, WANTED, choices),
         lambda reading: reading.table.columns if reading.table else (),
@@ -34,8 +35,8 @@ _MORE = N_("Further motors are left out for such reasons: {count}.")
 
 
 def motors_in(table: Table) -> tuple[list[MotorEntry], list[Sentence]]:
-    """Motors of a table, and what is said of those that can't be: in each figures that contradict one another."""
-    motors, said, count = list[MotorEntry](), list[Sentence](), 0
+    """Motors of a table, and sentences on those left out, whose figures contradict one another."""
+    motors, notes, count = list[MotorEntry](), list[Sentence](), 0
     for values in table.motors:
         try:
             motors.append(MotorEntry.model_validate(values))
@@ -44,11 +45,11 @@ def motors_in(table: Table) -> tuple[list[MotorEntry], list[Sentence]]:
             if count <= MOST_TOLD:
                 (location, fault, _), *_ = sentences_of(error)
                 row = table.origins[values["designation"]][0]
-                told = Sentence("{field} {fault}", {"field": str(location[0]) if location else "", "fault": fault})
-                said.append(Sentence(_LEFT_OUT, {"row": row, "name": values["designation"][:60], "fault": told}))
+                sentence = Sentence("{field} {fault}", {"field": str(location[0]) if location else "", "fault": fault})
+                notes.append(Sentence(_LEFT_OUT, {"row": row, "name": values["designation"][:60], "fault": sentence}))
     if count > MOST_TOLD:
-        said.append(Sentence(_MORE, {"count": count - MOST_TOLD}))
-    return motors, said
+        notes.append(Sentence(_MORE, {"count": count - MOST_TOLD}))
+    return motors, notes
 
 
 COLUMNS = (
@@ -61,13 +62,22 @@ COLUMNS = (
     "inertia_kgm2",
     "weight_kg",
 )
-"""Columns of a list as it is written, in the units of the wire."""
+"""Columns of a list in a written table, in the units of the wire."""
 
 
 def as_text(motors: Sequence[MotorEntry]) -> str:
-    """A list as a table to be edited: what is not known is blank."""
-    lines = ["\t".join(COLUMNS)]
+    """List as a table for editing: unknown figures are blank, and each point of a torque curve has a row."""
+    points = tuple(POINT) if any(motor.curve for motor in motors) else ()
+    lines = ["\t".join((*COLUMNS, *points))]
     for motor in motors:
-        values = [getattr(motor, name, None) for name in COLUMNS]
-        lines.append("\t".join("" if value is None else " ".join(str(value).split()) for value in values))
+        figures: Sequence[object] = [getattr(motor, name, None) for name in COLUMNS]
+        for point in motor.curve or (None,):
+            own = [getattr(point, field) if point else None for field in POINT.values()] if points else []
+            texts = ("" if value is None else _as_cell(value) for value in (*figures, *own))
+            lines.append("\t".join(texts))
+            figures = [motor.designation, *[None] * (len(COLUMNS) - 1)]
     return "\n".join(lines)
+
+
+def _as_cell(value: object) -> str:
+    return " ".join((f"{value:.17g}" if isinstance(value, float) and value.is_integer() else str(value)).split())

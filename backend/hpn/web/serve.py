@@ -1,4 +1,4 @@
-"""Running the service: processes, limits of the server, logs, and an end that lets running requests finish."""
+"""Running of the service: processes, limits of the server, logs, and a shutdown that lets running requests finish."""
 
 import asyncio
 import gc
@@ -31,15 +31,15 @@ from hpn.web.settings import GONE, Settings
 
 logger = logging.getLogger(__name__)
 RETRY_SECONDS = 2
-"""Time after which a worker that could not start is tried again."""
+"""Time after which a worker that could not start is restarted."""
 
 WORKER_BYTES = 768 << 20
 LIMITS = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))
-"""Files with the limit of this container: of the second version of control groups, and of the first."""
+"""Files with the memory limit of this container: in version 2 of control groups, and in version 1."""
 
 
 def served_app() -> FastAPI:
-    """The application in a process of its own, whose logs are all the service's."""
+    """Application for a process of its own; all logs of the process are the service's."""
     settings = Settings()
     logs.configure(settings.log_level)
     app = create_app(settings)
@@ -47,14 +47,14 @@ def served_app() -> FastAPI:
     logs.make_logger(settings.log_level).info("start", **versions)
     templates.prepare(templates.environment(app.state))
     gc.collect()
-    gc.freeze()  # catalogue, templates and modules are never garbage; to search them takes 90 ms each time
+    gc.freeze()  # catalogue, templates and modules are never garbage; each search of them takes 90 ms
     return app
 
 
 def worker_app() -> FastAPI:
-    """Application for one of several worker processes; the others go on when it ends.
+    """Application for one of several worker processes; the others continue when it ends.
 
-    An error that keeps a new one from starting, such as a catalogue damaged since, is a line of the log.
+    An error that prevents a new worker's start, such as a catalogue damaged meanwhile, is logged in one line.
     """
     try:
         app = served_app()
@@ -67,9 +67,9 @@ def worker_app() -> FastAPI:
 
 
 def _end_when_stuck(seconds: float) -> None:
-    """End this process, saying where it stands, once its event loop has not turned for so long.
+    """End this process, and log its stack, once its event loop has stood still for `seconds`.
 
-    The parent can't tell: a thread of its own answers it.
+    The parent can't detect this: a separate thread answers it.
     """
     loop, main, turned = asyncio.get_running_loop(), threading.get_ident(), threading.Event()
 
@@ -100,7 +100,7 @@ def options(settings: Settings) -> dict[str, Any]:
         "ws": "none",
         "log_config": None,
         "access_log": False,
-        "proxy_headers": False,  # who is trusted is a setting, and nobody is by default
+        "proxy_headers": False,  # trusted proxies are a setting, by default none
         "server_header": False,
         "timeout_graceful_shutdown": settings.shutdown_seconds,
         "timeout_worker_healthcheck": settings.worker_seconds,
@@ -108,7 +108,7 @@ def options(settings: Settings) -> dict[str, Any]:
 
 
 def _say_what_is_missed(settings: Settings) -> None:
-    """Log in a line each which variables do nothing any more, and that a proxy belongs before what others reach."""
+    """Warn of each variable that has no effect any more, and of an address that others reach without a proxy."""
     for name in sorted(os.environ):
         if (instead := GONE.get(name.upper())) and os.environ[name]:
             logger.warning("%s is no setting any more and does nothing; nginx has %s in its place", name, instead)
@@ -121,7 +121,7 @@ def _say_what_is_missed(settings: Settings) -> None:
 
 
 def run(settings: Settings) -> int:
-    """Serve until a signal says otherwise; 1 where the workers could not start."""
+    """Serve until a signal; exit code, 1 if the workers could not start."""
     logs.configure(settings.log_level)
     if short := shortage(settings.workers, settings.fleet_processes * settings.fleet_memory_bytes):
         logger.warning(short)
@@ -138,17 +138,17 @@ def run(settings: Settings) -> int:
 
 
 class Workers(Multiprocess):
-    """uvicorn's workers; at the end new connections are refused at once, as by a single process."""
+    """uvicorn's workers; at shutdown new connections are refused at once, as by a single process."""
 
     def terminate_all(self) -> None:
-        """Have the workers finish what runs."""
-        for listening in self.sockets:  # else the system would go on accepting, and nobody would answer
+        """Stop listening, and let the workers finish running requests."""
+        for listening in self.sockets:  # otherwise the system would accept connections that nobody answers
             listening.close()
         super().terminate_all()
 
 
 def shortage(workers: int, beside_bytes: int, limits: Iterable[Path] = LIMITS) -> str | None:
-    """Sentence for workers, each with so much beside it, that may take more than there is; None where it is enough."""
+    """Warning if workers, each with `beside_bytes` for fleets, may exceed the memory limit; None if they fit."""
     needed, limit = workers * (WORKER_BYTES + beside_bytes), _limit(limits)
     if limit is None or needed <= limit:
         return None
@@ -159,6 +159,6 @@ def shortage(workers: int, beside_bytes: int, limits: Iterable[Path] = LIMITS) -
 
 
 def _limit(limits: Iterable[Path]) -> int | None:
-    """Smallest limit in bytes, None where there is none."""
+    """Smallest limit in bytes, None without a limit."""
     texts = [file.read_text().strip() for file in limits if file.is_file()]
     return min((int(text) for text in texts if text.isdigit()), default=None)

@@ -1,4 +1,4 @@
-"""Every setting, by environment variable `HPN_…` or secret file `hpn_…`; the README's table lists them."""
+"""Settings, each from an environment variable `HPN_…` or a secret file `hpn_…`; the README's table lists them."""
 
 import os
 import re
@@ -21,11 +21,11 @@ from pydantic_settings import (
     SettingsError,
 )
 
-from hpn.catalogue import AVERAGING_S, HANDBOOK_FOLDER
+from hpn.catalogue import AVERAGING_S, HANDBOOK_FOLDER, Catalogue, load_catalogue
 from hpn.words.likeness import likeness
 
 RouteGroup = Literal["calculator", "batch", "writing", "listing", "deleting", "reading", "metrics"]
-"""Kinds of requests that keys and rate limits tell apart; each route declares its own."""
+"""Kinds of requests that keys and rate limits distinguish; each route declares its kind."""
 
 
 KEY_PAIR = re.compile(r"([A-Za-z0-9._-]{1,64}):([0-9a-fA-F]{64})")
@@ -33,14 +33,14 @@ KEY_PAIR = re.compile(r"([A-Za-z0-9._-]{1,64}):([0-9a-fA-F]{64})")
 
 @dataclass(frozen=True, slots=True)
 class ApiKey:
-    """One key: its name, and the SHA-256 of the key itself, which has 192 random bits and so needs no slow hash."""
+    """Name of a key and its SHA-256; the key has 192 random bits, so it needs no slow hash."""
 
     name: str
     digest: bytes
 
     @classmethod
     def parse(cls, pair: str) -> "ApiKey":
-        """Key of a `name:sha256` pair; ValueError for anything else, which may be a secret and is not repeated."""
+        """Key of a `name:sha256` pair; ValueError for any other text, which may be a secret and is not quoted."""
         match = KEY_PAIR.fullmatch(pair)
         if match is None:
             raise ValueError("must be name:sha256 pairs, as `hpn key NAME` prints them")
@@ -109,13 +109,13 @@ def _existing_folder(path: Path | None) -> Path | None:
 
 
 def _own_port(value: object) -> object:
-    """The default for an address: Kubernetes sets HPN_PORT to that of a service named hpn, which is no port of ours."""
+    """Default port in place of an address: Kubernetes sets HPN_PORT to the address of a service that is named hpn."""
     return PORT if isinstance(value, str) and value.startswith("tcp://") else value
 
 
 PORT = 8000
 SECRETS = Path("/run/secrets")
-"""Where engines put secret files, unless HPN_SECRETS_FOLDER says otherwise."""
+"""Folder of secret files in containers, unless HPN_SECRETS_FOLDER names another."""
 ORIGIN = re.compile(
     r"(?!http://[^/]*:80$|https://[^/]*:443$)[a-z][a-z0-9+.-]*://([a-z0-9._-]+|\[[0-9a-f:]+\])(:[0-9]+)?"
 )
@@ -129,11 +129,11 @@ GONE = {
     "HPN_MAXIMUM_CONNECTIONS": "worker_connections and max_conns",
     "HPN_HEAD_SECONDS": "client_header_timeout",
 }
-"""Variables that were settings, and what stands in their place in backend/nginx.conf."""
+"""Variables of former settings, and their replacements in backend/nginx.conf."""
 
 
 class DatabaseSettings(TypedDict):
-    """Arguments of a store."""
+    """Arguments for the store."""
 
     address: str
     seconds: float
@@ -141,24 +141,24 @@ class DatabaseSettings(TypedDict):
 
 
 class SecretFiles(SecretsSettingsSource):
-    """Settings out of files, such as /run/secrets/hpn_api_keys; what can't be read is an error that names the file."""
+    """Settings from files, such as /run/secrets/hpn_api_keys; the error for an unreadable file names it."""
 
     def __call__(self) -> dict[str, Any]:
-        """Settings by name; a folder that isn't one is refused with the setting that names it."""
+        """Settings by name; the check of `secrets_folder` refuses a folder that doesn't exist."""
         self.secrets_dir = _secrets_folder(self.current_state.get("secrets_folder"))
         return super().__call__()
 
     def get_field_value(self, field: FieldInfo, field_name: str) -> tuple[Any, str, bool]:
-        """Content of a setting's file, if there is one; SettingsError where it can't be read."""
+        """Content of a setting's file, if it exists; SettingsError if it can't be read."""
         try:
-            with warnings.catch_warnings(action="error"):  # a file that would be left out
+            with warnings.catch_warnings(action="error"):  # warns of a file that it leaves out
                 return super().get_field_value(field, field_name)
         except (OSError, UnicodeDecodeError, UserWarning) as error:
             raise SettingsError(f"{self.secrets_dir}/hpn_{field_name}: can’t be read: {error}") from error
 
 
 def _secrets_folder(named: str | Path | None) -> Path | None:
-    """Folder of secret files, if there is one; OSError where this user may not look, which is_dir() takes for none."""
+    """Folder of secret files, None if there is none; OSError for a lack of permission, which is_dir() would hide."""
     folder = Path(named or SECRETS)
     try:
         return folder if stat.S_ISDIR(folder.stat().st_mode) else None
@@ -167,7 +167,7 @@ def _secrets_folder(named: str | Path | None) -> Path | None:
 
 
 def source_of(name: str) -> str:
-    """Variable that gives a setting, or else the file."""
+    """Name of the variable or path of the file that gives a setting."""
     variable = f"HPN_{name.upper()}"
     names = {key.upper(): value for key, value in os.environ.items()}
     folder = _secrets_folder(names.get("HPN_SECRETS_FOLDER"))
@@ -176,7 +176,7 @@ def source_of(name: str) -> str:
 
 
 class Settings(BaseSettings):
-    """Settings of one process; read once at start and passed on, never global."""
+    """Settings of one process, read once at start and passed on; never global."""
 
     model_config = SettingsConfigDict(
         env_prefix="HPN_", env_ignore_empty=True, extra="ignore", hide_input_in_errors=True
@@ -296,6 +296,10 @@ class Settings(BaseSettings):
         """Sources by precedence: arguments, variables, files."""
         return init_settings, env_settings, SecretFiles(settings_cls)
 
+    def catalogue(self) -> Catalogue:
+        """Catalogue with its supplement; raises CatalogueError."""
+        return load_catalogue(self.catalogue_folder, self.catalogue_supplement, self.averaging_seconds)
+
     def database(self) -> "DatabaseSettings":
         """Arguments that open the store."""
         password = self.database_password and self.database_password.get_secret_value()
@@ -307,13 +311,13 @@ class Settings(BaseSettings):
 
     @model_validator(mode="after")
     def _no_name_misspelt(self) -> Self:
-        """Raise ValueError for a variable or file next to a setting's name, else what it guards would stay open."""
+        """Raise ValueError for a variable or file with a misspelt setting's name: its protection would be missing."""
         known = [f"HPN_{name.upper()}" for name in type(self).model_fields]
         folder = _secrets_folder(self.secrets_folder)
         sources = {name: name for name in os.environ}
         sources |= {file.name: str(file) for file in (folder.iterdir() if folder else ())}
         for name in sorted(sources):
-            meant = None if name.upper() in {*known, *GONE} else likeness(name, known, 0.85)
-            if meant and name.upper().startswith("HPN_"):
-                raise ValueError(f"{sources[name]} is not a setting; it looks like {meant}")
+            likely = None if name.upper() in {*known, *GONE} else likeness(name, known, 0.85)
+            if likely and name.upper().startswith("HPN_"):
+                raise ValueError(f"{sources[name]} is not a setting; it looks like {likely}")
         return self

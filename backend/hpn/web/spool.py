@@ -1,4 +1,4 @@
-"""The folder for what stands on a disk while a request is answered: files of fleets, batches of lines."""
+"""Folder for files that exist while a request is answered: files of fleets, batches of lines."""
 
 import asyncio
 import errno
@@ -18,7 +18,7 @@ FULL = N_("The spool folder (HPN_SPOOL_FOLDER) is full: try again later.")
 UNUSABLE = N_("The spool folder (HPN_SPOOL_FOLDER) is missing or not writable: try again later.")
 FULL_CODES = frozenset({errno.ENOSPC, errno.EDQUOT})
 CODES = FULL_CODES | {errno.ENOENT, errno.ENOTDIR, errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO}
-"""Errors of a disk, in place of those that a connection has."""
+"""Error codes of a disk, which distinguish its errors from those of a connection."""
 
 RETRY_SECONDS = 30
 TRIED_BYTES = 64 * 1024
@@ -28,13 +28,13 @@ logger = logging.getLogger(__name__)
 
 
 def refusal(code: int | None) -> Problem:
-    """Problem of a folder that can’t be used, by the system's code."""
+    """Problem 503 for an unusable folder, by the system's error code."""
     return Problem.later(Sentence(FULL if code in FULL_CODES else UNUSABLE), RETRY_SECONDS)
 
 
 @contextmanager
 def usable() -> Iterator[None]:
-    """Raise Problem 503 where what is done inside fails for want of the folder, or of room in it."""
+    """Raise Problem 503 if the work inside fails for lack of the folder, or of room in it."""
     try:
         yield
     except OSError as error:
@@ -45,16 +45,16 @@ def usable() -> Iterator[None]:
 
 
 def require_room(folder: Path | None) -> None:
-    """Raise Problem 503 where a small file can't be written to a folder; None: the system's for temporary files."""
+    """Raise Problem 503 if a small file can't be written to a folder; None: the system's folder for temporary files."""
     with usable(), tempfile.TemporaryFile(dir=folder, buffering=0) as file:
         left = memoryview(os.urandom(TRIED_BYTES))
-        while left:  # of what has no room, a part may be taken without a word
+        while left:  # on a full disk a write may be partial without an error
             left = left[file.write(left) :]
         os.fsync(file.fileno())
 
 
 class Trial:
-    """Tries whether the folder can be written to, at most once in TRIAL_SECONDS however often it is asked."""
+    """Test of whether the folder is writable, made at most once in TRIAL_SECONDS, however often it is asked for."""
 
     def __init__(self, settings: Settings) -> None:
         self._folder = settings.spool_folder
@@ -62,7 +62,7 @@ class Trial:
         self._next = 0.0
 
     async def check(self) -> None:
-        """Raise Problem 503 unless it can."""
+        """Raise Problem 503 if the folder is not writable."""
         now = time.monotonic()
         if self._trial is None or (self._trial.done() and now >= self._next):
             self._next = now + TRIAL_SECONDS

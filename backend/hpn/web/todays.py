@@ -1,6 +1,6 @@
-"""Today's verdicts on saved documents: asked in the background after a change of engine or catalogue, once a version.
+"""Today's verdicts on saved documents: computed in the background, once for each version of engine and catalogue.
 
-Several processes share the work: each takes some documents at a time, which no other takes meanwhile.
+Several processes share the work: each reserves some documents at a time.
 """
 
 import asyncio
@@ -24,22 +24,22 @@ from hpn.web.columns import resolved
 from hpn.web.door.pools import Pool
 
 MOST_DOCUMENTS, MOST_AXES = 20, 100
-"""Documents that are taken at once, and axes that are answered at once: what is in memory, and holds up a batch."""
+"""Documents that are taken at once, and axes that are answered at once: they bound the memory and a batch's wait."""
 
 START_SECONDS, PATIENCE_SECONDS = 5.0, 60.0
-"""Time after the start, and after each look, at which it is looked whether there is anything to ask, unless a list has
-shown that there is."""
+"""Time from the start to the first check for documents to ask about, and between checks; a list that shows such
+documents triggers a check at once."""
 
 logger = logging.getLogger(__name__)
 
 
 def versions_of(state: State) -> Versions:
-    """Versions of today."""
+    """Today's versions of engine and catalogue."""
     return Versions(ENGINE_VERSION, state.catalogue.version)
 
 
 class Todays:
-    """The background work of one process, at `app.state.todays`."""
+    """Background work of one process, at `app.state.todays`."""
 
     def __init__(self, state: State) -> None:
         self._state = state
@@ -47,17 +47,17 @@ class Todays:
         self._started = datetime.now(UTC)
 
     def wake(self) -> None:
-        """Look soon."""
+        """Trigger a check."""
         self._wanted.set()
 
     def note(self, lines: Iterable[DocumentLine | SelectionLine]) -> None:
-        """Look soon where a list has documents of which it is not known what they get today."""
+        """Trigger a check if a list has documents without today's verdict."""
         key = versions_of(self._state).key
         if any(each.today_of != key for each in lines):
             self.wake()
 
     async def run(self) -> None:
-        """Ask what is to be asked, and wait for more, until this is cancelled; the start of a service comes first."""
+        """Compute missing verdicts and wait for more until cancelled; the first check waits for the service's start."""
         patience = START_SECONDS
         while True:
             with suppress(TimeoutError):
@@ -74,23 +74,23 @@ class Todays:
                 logger.exception("what saved documents get today can’t be asked")
 
     async def ask_some(self) -> int:
-        """Number of documents that were taken and asked; 0 where there is nothing left to do."""
+        """Compute verdicts on some documents; their number, 0 if none is left."""
         store: Store = self._state.store
         versions = versions_of(self._state)
         if not await store.pending(versions, None):
             return 0
-        taken = await store.take_stale(versions, MOST_DOCUMENTS, self._started)
-        selections = [each for each in taken if each.kind == "selection"]
+        documents = await store.take_stale(versions, MOST_DOCUMENTS, self._started)
+        selections = [each for each in documents if each.kind == "selection"]
         values = await self._work(_today_of, selections, self._state.catalogue) if selections else []
         for stale, answer in zip(selections, values, strict=True):
             await store.settle(stale, versions, answer)
-        for stale in taken:
+        for stale in documents:
             if stale.kind == "machine":
                 await self._try_machine(stale, versions)
-        return len(taken)
+        return len(documents)
 
     async def _try_machine(self, stale: Stale, versions: Versions) -> None:
-        """Ask a machine; one that can't be asked holds up no other, and is tried again later."""
+        """Compute verdicts on a machine; a failure is logged, delays no other machine, and is tried again later."""
         try:
             await self._ask_machine(stale, versions)
         except StoreError:
@@ -109,7 +109,7 @@ class Todays:
         await store.settle_machine(stale.id, versions)
 
     async def _work(self, work: Any, *arguments: Any) -> Any:
-        """Result of work among the batches, of whose time it takes no more than half."""
+        """Result of work in the pool of batches; it takes at most half of the pool's time."""
         pool: Pool = self._state.pools["batches"]
         begun = time.monotonic()
         result = await pool.run(work, *arguments)
@@ -123,7 +123,7 @@ def _verdict(answer: AxisAnswer, ordering_code: str | None) -> tuple[str, str | 
 
 
 def _verdicts(axes: Sequence[SavedAxis], common: str, catalogue: Catalogue) -> list[AxisVerdict]:
-    """Axes of a machine, and whether today's verdict is another one."""
+    """Axes of a machine, each with a mark of whether today's verdict differs."""
     values = orjson.loads(common)
     fresh = answers([AxisQuestion(resolved(axis, values), axis.ordering_code) for axis in axes], catalogue)
     return [
@@ -137,7 +137,7 @@ def _verdict_of(answer: Any, ordering_code: str | None) -> tuple[str, str | None
 
 
 def _today_of(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
-    """Columns of what selections get today; of one that can't be asked, that this is not known."""
+    """Columns of today's answers to selections; a selection that fails gets `today_changed` None."""
     try:
         return _answered(selections, catalogue)
     except Exception:
@@ -158,7 +158,7 @@ def _columns(then: Stale, answer: AxisAnswer | None) -> dict[str, Any]:
     if answer is None:
         return {"today_selected": then.selected, "today_status": then.status, "today_changed": 0}
     is_other = answer.selected != then.selected
-    if then.status is not None:  # else an earlier version has kept nothing to compare with
+    if then.status is not None:  # None if an earlier version has kept no verdict
         is_other = is_other or _verdict(answer, then.ordering_code) != (
             then.status,
             then.selected if then.ordering_code is None else then.designation,

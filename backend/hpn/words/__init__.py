@@ -1,1 +1,1 @@
-"""Words: what things are called, in which units and symbols, and how they are shown in a language."""
+"""Words: names of quantities, their units and symbols, and their form in each language."""

@@ -6,7 +6,7 @@ number.
 
 from collections.abc import Callable
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import (
     AfterValidator,
@@ -24,11 +24,11 @@ from hpn.words.units import suffix_of, symbol_of
 MAXIMUM_PHASES = 10_000
 
 LEAST = 1e-12
-"""Smallest number that stands below a fraction: a quotient by a smaller one could overflow."""
+"""Smallest divisor: a quotient by a smaller one could overflow."""
 
 
 def _above_zero(value: float) -> float:
-    """Refuse a number that is not above 0, or so small that a quotient by it could overflow."""
+    """Refuse a number not above 0, or so small that a quotient by it could overflow."""
     if value <= 0:
         raise PydanticKnownError("greater_than", {"gt": 0})
     if value < LEAST:
@@ -52,9 +52,9 @@ PART = 500
 
 
 def in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[Any, ...]:
-    """Validate a long list part by part: other threads run in between, and only one part has errors.
+    """Validate a long list part by part, so that other threads run in between, and only one part has errors.
 
-    Validated items stay in front, so that an error has its place in the whole list.
+    Validated items stay in front, so that the place in an error counts in the whole list.
     """
     if not isinstance(value, list | tuple) or len(value) <= PART:
         return validate(value)
@@ -64,13 +64,13 @@ def in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[An
     return done
 
 
-def _whole(value: object) -> object:
-    """Whole floats as the integers that JSON Schema counts them as; anything else unchanged."""
+def whole(value: object) -> object:
+    """Whole floats as integers, as JSON Schema counts them; any other value unchanged."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
-WHOLE = BeforeValidator(_whole)
-"""Validator behind the bounds of an integer, so that JSON Schema has these."""
+WHOLE = BeforeValidator(whole)
+"""Validator behind an integer's bounds, so that these appear in its JSON Schema."""
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Torque = Annotated[Number, Field(ge=-1e6, le=1e6)]
@@ -90,14 +90,14 @@ Ratio = Annotated[int, Field(strict=True, ge=1, le=10_000), WHOLE]
 
 
 def name_units(schema: dict[str, Any]) -> None:
-    """Put the unit of every field beside it in the JSON Schema, read from the field's own name."""
+    """Add the unit of every field to the JSON Schema, read from the field's own name."""
     for name, entry in schema.get("properties", {}).items():
         if suffix_of(name):
             entry["x-unit"] = symbol_of(name)
 
 
 def describe(schema: dict[str, Any]) -> None:
-    """Say in the JSON Schema of a model which fields may be null, and the unit of every field."""
+    """Mark nullable fields in a model's JSON Schema, and add the unit of every field."""
     for name, entry in schema.get("properties", {}).items():
         if name not in schema.get("required", ()):
             _let_be_null(entry)
@@ -112,25 +112,32 @@ def _let_be_null(entry: dict[str, Any]) -> None:
 
 
 BESIDE = ("default", "description", "examples", "title")
-"""Keys of a field's JSON Schema that hold for its null as well."""
+"""Keys of a field's JSON Schema that apply to its null as well."""
 
 
 def one_of(schema: dict[str, Any]) -> None:
-    """Name a union whose members exclude each other `oneOf`, which generators of clients read as a union of types."""
+    """Rename a union with exclusive members to `oneOf`, which generators of clients read as a union of types."""
     schema["oneOf"] = schema.pop("anyOf")
 
 
 class Model(BaseModel):
-    """Frozen, and closed: an unknown field is an error, never ignored. A null where a field may be left out is none."""
+    """Frozen, closed model: an unknown field is an error, never ignored. A null in an optional field counts as not
+    given.
 
+    `read_only` are fields of replies that are ignored in requests.
+    """
+
+    read_only: ClassVar[frozenset[str]] = frozenset()
     model_config = ConfigDict(frozen=True, extra="forbid", json_schema_extra=describe)
 
     @model_validator(mode="before")
     @classmethod
     def _reads_fields(cls, value: Any) -> Any:
-        """The value without nulls of fields that have something else by default; an unknown one is refused."""
+        """The value without nulls in fields with another default; an unknown field is refused."""
         if not isinstance(value, dict) or isinstance(value, _Refused):
             return value
+        if not cls.read_only.isdisjoint(value):
+            value = {name: each for name, each in value.items() if name not in cls.read_only}
         if None in value.values():
             value = {name: each for name, each in value.items() if each is not None or name not in _defaults(cls)}
         if not value.keys() <= cls.model_fields.keys():
@@ -139,7 +146,7 @@ class Model(BaseModel):
 
     @classmethod
     def _refuse_unknown(cls, value: dict[str, Any]) -> None:
-        """Raise the errors of a value with an unknown field, which know the fields that there are."""
+        """Raise the errors of a value with an unknown field; they include the known fields."""
         if len(value.keys() - cls.model_fields.keys()) > MOST_UNKNOWN:
             return
         try:
@@ -151,16 +158,16 @@ class Model(BaseModel):
 
 
 class _Refused(dict[str, Any]):
-    """A value with an unknown field, on its second way through its model."""
+    """A value with an unknown field, in its second validation."""
 
 
 MOST_UNKNOWN = 20
-"""Unknown fields of an object that are compared with those that there are; with more it is another object."""
+"""Unknown fields, at most, that are compared with known ones; with more it is another kind of object."""
 
 
 @cache
 def _defaults(model: type[Model]) -> frozenset[str]:
-    """Fields that have something else than null by default."""
+    """Fields with a default other than null."""
     return frozenset(
         name
         for name, field in model.model_fields.items()
@@ -169,7 +176,7 @@ def _defaults(model: type[Model]) -> frozenset[str]:
 
 
 def _with_fields(entry: ErrorDetails, fields: tuple[str, ...]) -> InitErrorDetails:
-    """An error of a model as it was, with the model's fields where it is an unknown one."""
+    """A model's error, with the model's fields if it is about an unknown field."""
     is_unknown = entry["type"] == UNKNOWN and len(entry["loc"]) == 1
     context = {"fields": fields} if is_unknown else entry.get("ctx")
     error = PydanticCustomError(entry["type"], entry["msg"], context)
@@ -177,10 +184,10 @@ def _with_fields(entry: ErrorDetails, fields: tuple[str, ...]) -> InitErrorDetai
 
 
 UNKNOWN = "extra_forbidden"
-"""Pydantic's code of an unknown field."""
+"""Pydantic's code for an unknown field."""
 
 
 def refused(model: BaseModel, *problems: tuple[tuple[str | int, ...], PydanticCustomError]) -> ValidationError:
-    """Error of a model at places below it: (location, error) each; a validator raises it."""
+    """Error of a model at places below it, from pairs (location, error), for a validator to raise."""
     details = [InitErrorDetails(type=error, loc=location, input=None) for location, error in problems]
     return ValidationError.from_exception_data(type(model).__name__, details)

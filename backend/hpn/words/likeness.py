@@ -1,4 +1,4 @@
-"""Likeness of a misspelt name to one that there is."""
+"""Likeness of a misspelt name to a known one."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -6,11 +6,11 @@ from difflib import get_close_matches
 from hpn.words.units import suffix_of
 
 LONGEST = 80
-"""Characters of a name that are compared: of a longer one the time would grow with its square."""
+"""Characters of a name that are compared: the time grows with their square."""
 
 
 def likeness(name: str, known: Iterable[str], least: float = 0.6) -> str | None:
-    """The known name that another looks like, with its unit or without, in upper or lower case; None where none does.
+    """The known name most like another, with its unit or without, in upper or lower case; None if none is close.
 
     `least` is the ratio of `difflib`, 1 for the same letters.
     """

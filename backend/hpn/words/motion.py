@@ -1,4 +1,4 @@
-"""Inputs of a motion and of a body that turns: their names and symbols, by their path in each.
+"""Inputs of a motion and of a turning body: their names and symbols, by their path in each.
 
 `quantities.py` has them all under one name.
 """
@@ -57,4 +57,4 @@ BODY: Mapping[str, Named] = {
     "height_mm": Named(N_("Height")),
     "distance_mm": Named(N_("Off the axis")),
 }
-"""Inputs of a body whose moment of inertia is calculated; none is part of an application."""
+"""Inputs of a body for calculating a moment of inertia; they are not part of an application."""

@@ -1,7 +1,7 @@
-"""Patterns over what a stranger has typed: each has a bound on the length that it is given.
+"""Patterns over typed text, each with a limit on the text's length.
 
-A pattern may take the square of the length of a text, and holds the interpreter meanwhile. Modules of tables use none
-but these.
+A pattern may take a time that grows with the square of the length, and holds the interpreter meanwhile. Modules of
+tables use only these patterns.
 """
 
 import re
@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 
 
 class Pattern:
-    """A regular expression for texts up to a length. A longer one is no match, stays as it is, and is one part."""
+    """A regular expression for texts up to a length. A longer text is no match, stays unchanged, and is one part."""
 
     def __init__(self, pattern: str, longest: int, flags: re.RegexFlag = re.NOFLAG) -> None:
         self._compiled, self.longest = re.compile(pattern, flags), longest
@@ -31,7 +31,7 @@ class Pattern:
         return self._compiled.finditer(text) if len(text) <= self.longest else iter(())
 
     def sub(self, new: str | Callable[[re.Match[str]], str], text: str) -> str:
-        """A text with something else in place of what matches."""
+        """A text with its matches replaced."""
         return self._compiled.sub(new, text) if len(text) <= self.longest else text
 
     def split(self, text: str) -> list[str]:

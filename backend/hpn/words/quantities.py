@@ -1,8 +1,8 @@
 """Every public quantity: its name, the handbook's symbol for it, and one sentence on it.
 
-A quantity is named by the place where it stands: an input by its path in the application, a figure by `duty`,
-`candidate`, `check`, `reserve` or `gear` before its field. Its unit is the suffix of the field. Page, report, workbook,
-Asset Administration Shell, comparison, differences and the OpenAPI document all call it so.
+A quantity's code is its place: an input's path in the application, or `duty`, `candidate`, `check`, `reserve` or `gear`
+before a figure's field. Its unit is the suffix of the field. Page, report, workbook, Asset Administration Shell,
+comparison, differences and the OpenAPI document all use this name.
 """
 
 from collections.abc import Mapping
@@ -83,6 +83,10 @@ INPUTS: Mapping[str, Named] = {
     "requirements.motor.rated_speed_rpm": Named(N_("Rated motor speed"), "n_mot,N"),
     "requirements.motor.inertia_kgm2": Named(N_("Inertia of the motor"), "J_m"),
     "requirements.motor.inertia_ratio": Named(N_("Largest inertia ratio"), "r_J"),
+    "requirements.motor.stall_torque_Nm": Named(N_("Torque at standstill"), "M_0"),
+    "requirements.motor.weight_kg": Named(N_("Weight of the motor"), "m_mot"),
+    "requirements.motor.curve": Named(N_("Motor torque over speed"), "M_c"),
+    "requirements.motor.name": Named(N_("Name of the motor")),
     "requirements.motor.designation": Named(N_("Motor of your list")),
     "requirements.load_inertia_kgm2": Named(N_("Inertia of the load"), "J_L"),
     "requirements.natural_frequency_Hz": Named(N_("Minimum natural frequency"), "f_req"),
@@ -102,7 +106,7 @@ INPUTS: Mapping[str, Named] = {
     "application_area": Named(N_("Area of use")),
     "rank_by": Named(N_("Rank by")),
 }
-"""Inputs, in the order in which a file lists them."""
+"""Inputs, in the order of a file."""
 
 DUTY: Mapping[str, Named] = {
     "average_torque_Nm": Named(N_("Average torque"), "T_av", "Average output torque T_av.", "17.2"),
@@ -134,7 +138,7 @@ PHASE: Mapping[str, Named] = {
         strict=False,
     )
 }
-"""Figures of a phase that comes out of a motion."""
+"""Figures of a phase that results from a motion."""
 
 CANDIDATE: Mapping[str, Named] = {
     "designation": Named(N_("Gear"), "", "Designation such as HPN-20A-5."),
@@ -146,10 +150,12 @@ CANDIDATE: Mapping[str, Named] = {
     "utilisation": Named(
         N_("Utilisation"), "", "Largest utilisation of the load checks and of failing property checks."
     ),
-    "governing_check": Named(N_("Governing check"), "", "Code of the check with that utilisation."),
+    "governing_check": Named(N_("Governing check"), "", "Code of the check with this utilisation."),
     "reason": Named(N_("Reason"), "", "Reason for the candidate’s status."),
     "missing": Named(
-        N_("Missing inputs"), "", "Paths of the inputs that an unrated candidate lacks alone; none elsewhere."
+        N_("Missing inputs"),
+        "",
+        "Paths of the missing inputs, if nothing else keeps an unrated candidate from being rated; else empty.",
     ),
     "average_input_speed_rpm": Named(N_("Average input speed"), "n_in,av", "Average input speed.", "17.5"),
     "maximum_input_speed_rpm": Named(N_("Maximum input speed"), "n_in,max", "Maximum input speed.", "17.6"),
@@ -184,7 +190,7 @@ CANDIDATE: Mapping[str, Named] = {
         "unlimited or one is not rated.",
     ),
     "shortest_life_of": Named(
-        N_("Shortest life of"), "", "The life that this is, with its basis; null where there is no number."
+        N_("Shortest life of"), "", "Kind of the shortest life, with its basis; null without a number."
     ),
     "motor_peak_torque_Nm": Named(
         N_("Peak motor torque needed"),
@@ -197,6 +203,18 @@ CANDIDATE: Mapping[str, Named] = {
         "T_rms/(i·η)",
         "RMS torque at the motor, T/(i·η), over the cycle with pause; along a motion with the motor’s own inertia, "
         "where that is given. Where no efficiency is known η is 1, and the torque a lower bound.",
+    ),
+    "motor_thermal_torque_Nm": Named(
+        N_("RMS torque by the motor’s losses"),
+        "T_th",
+        "RMS torque with which the motor’s losses balance along its torque curve: the root of the mean of M_c(n)² over "
+        "the cycle, the pause at speed 0. Null without a curve, and beyond its last speed.",
+    ),
+    "motor_mean_speed_torque_Nm": Named(
+        N_("RMS torque by the makers’ rule"),
+        "M_c,av",
+        "Continuous torque of the motor’s curve at the mean speed; the makers’ rule compares it with the RMS. Null "
+        "likewise.",
     ),
     "motor_torque_limit_Nm": Named(
         N_("Torque limit of the drive"),
@@ -239,7 +257,7 @@ CANDIDATE: Mapping[str, Named] = {
     "stop_torque_Nm": Named(
         N_("Emergency-stop torque"),
         "T_k",
-        "Torque of the gear in an emergency stop: as given, else the bound that the brake gives.",
+        "Torque of the gear in an emergency stop: as given, else the bound from the brake.",
     ),
     "stopping_time_s": Named(
         N_("Stopping time"),
@@ -260,7 +278,7 @@ CANDIDATE: Mapping[str, Named] = {
     "stop_radial_N": Named(
         N_("Radial load of the emergency stop"),
         "F_R,k",
-        "Radial load of pinion or pulley at T_k; shown, not checked; null without an emergency stop, and without one.",
+        "Radial load of pinion or pulley at T_k; shown, not checked; null without an emergency stop, pinion or pulley.",
         caveat=N_("Load of pinion or pulley at T_k; not checked."),
     ),
     "end_stop_speed_rpm": Named(
@@ -283,11 +301,11 @@ LISTED: Mapping[str, Named] = {
     "shortest_life_h": Named(N_("Life")),
     "maximum_input_speed_rpm": Named(N_("Input speed")),
 }
-"""Figures of a candidate that the page lists of all of them, by a name as short as a column."""
+"""Figures that the page lists for all candidates, with names short enough for a column."""
 
 RESERVE: Mapping[str, Named] = {
     "torque_factor": Named(
-        N_("All duty torques"), "", "Factor on all duty torques; null where nothing limits, and where it is not rated."
+        N_("All duty torques"), "", "Factor on all duty torques; null where nothing limits it or it is not rated."
     ),
     "speed_factor": Named(N_("All speeds"), "", "Factor on all speeds; null likewise."),
     "load_factor": Named(N_("All output loads"), "", "Factor on all output loads; null likewise."),
@@ -295,7 +313,7 @@ RESERVE: Mapping[str, Named] = {
     "brake_torque_Nm": Named(
         N_("Largest permissible brake torque"),
         "T_B",
-        "Largest brake torque with which the emergency stop passes by T_M, u and number; null without a brake.",
+        "Largest brake torque at which the emergency stop passes by T_M, u and number; null without a brake.",
     ),
     "brake_torque_repeated_Nm": Named(
         N_("Largest brake torque, at T_R"),
@@ -314,9 +332,11 @@ RESERVE: Mapping[str, Named] = {
 CHECK: Mapping[str, Named] = {
     "code": Named(N_("Check"), "", "Code of the check; its definition stands in check_definitions."),
     "demand": Named(
-        N_("Demand"), "", "The value tested, in the check’s unit; null where it is unlimited or not published."
+        N_("Demand"), "", "Tested value, in the check’s unit; null where it is unlimited or not published."
     ),
-    "limit": Named(N_("Limit"), "", "Its bound, in the check’s unit; null where it is unlimited or not published."),
+    "limit": Named(
+        N_("Limit"), "", "Limit of the tested value, in the check’s unit; null where it is unlimited or not published."
+    ),
     "utilisation": Named(
         N_("Utilisation"), "", "Demand over limit (limit over demand for a minimum); null where there is none."
     ),
@@ -324,7 +344,7 @@ CHECK: Mapping[str, Named] = {
     "at_least": Named(
         N_("Utilisation, at least"),
         "",
-        "Lower bound of the utilisation of a check that an input would rate; else null.",
+        "Lower bound of the utilisation if the check lacks an input to be rated; else null.",
     ),
 }
 
@@ -370,7 +390,7 @@ GEAR: Mapping[str, Named] = {
     "clamp_bolts": Named(N_("Motor coupling bolt"), "", "Bolts of the motor coupling."),
     "housing_bolts": Named(N_("Housing bolts"), "", "Bolts of the housing flange."),
     "note": Named(N_("Note"), "", "Note on the size."),
-    "sources": Named(N_("Source"), "", "Where each figure comes from, by field name."),
+    "sources": Named(N_("Source"), "", "Source of each figure, by field name."),
 }
 
 BOLT: Mapping[str, Named] = {
@@ -378,7 +398,7 @@ BOLT: Mapping[str, Named] = {
     "bolt_size": Named(N_("Thread"), "", "Thread."),
     "pitch_diameter_mm": Named(N_("Bolt pitch diameter"), "", "Bolt pitch diameter."),
     "tightening_torque_Nm": Named(N_("Tightening torque"), "", "Tightening torque."),
-    "source": Named(N_("Source"), "", "Where the figures come from."),
+    "source": Named(N_("Source"), "", "Source of the figures."),
 }
 
 MOTOR: Mapping[str, Named] = {
@@ -388,13 +408,13 @@ MOTOR: Mapping[str, Named] = {
     "rated_torque_Nm": Named(N_("Rated motor torque"), "T_mot,N", "Continuous torque."),
     "peak_torque_Nm": Named(N_("Peak motor torque"), "T_mot", "Peak torque."),
     "inertia_kgm2": Named(N_("Inertia of the motor"), "J_m", "Moment of inertia of the rotor."),
-    "source": Named(N_("Source"), "", "Where the figures come from."),
+    "source": Named(N_("Source"), "", "Source of the figures."),
 }
 
 SERIES: Mapping[str, Named] = {
     "value": Named(N_("Value"), "", "The figure or text."),
     "unit": Named(N_("Unit"), "", "Its unit."),
-    "source": Named(N_("Source"), "", "Where it comes from."),
+    "source": Named(N_("Source"), "", "Source of the figure."),
 }
 
 ENVELOPE: Mapping[str, Named] = {

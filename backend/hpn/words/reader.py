@@ -1,7 +1,7 @@
-"""The reader of a page or a file: language, units and number format of everything shown.
+"""The reader of a page or a file: language, units and number format of all content.
 
-The one catalogue of translations behind page and files is compiled in memory when it is first needed. Babel comes with
-the extra `serve`, a third of what `hpn select` would take: it is imported where something is shown to a reader.
+The only catalogue of translations for page and files is compiled in memory on first use. Babel comes with the extra
+`serve` and takes a third of the time of `hpn select`: it is imported only where a reader sees the result.
 """
 
 import math
@@ -30,7 +30,7 @@ LANGUAGE_NAMES = {"en": "English", "de": "Deutsch"}
 """Each language by its own name."""
 
 GROUP = "\N{NARROW NO-BREAK SPACE}"
-"""Between thousands in English, where a comma would be a decimal mark elsewhere; and before a unit."""
+"""Separator of thousands in English, where a comma would be a decimal mark elsewhere; and before a unit."""
 
 MINUS, NOTHING = "\N{MINUS SIGN}", "–"
 _DATES = {"en": "en_GB", "de": "de_DE"}
@@ -39,9 +39,9 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 @dataclass(frozen=True)
 class Reader:
-    """A language, units for display, and how many significant digits a computed number has: 3 on pages, 4 in files.
+    """A language, units for display, and significant digits of a computed number: 3 on pages, 4 in files.
 
-    Everything else (API, links, `data-value`) speaks the units of the wire and has every digit.
+    Everything else (API, links, `data-value`) uses the units of the wire and has every digit.
     """
 
     language: str = "en"
@@ -50,7 +50,7 @@ class Reader:
 
     @classmethod
     def of_marker(cls, marker: str) -> "Reader":
-        """Reader of a `marker`; what is unknown in it counts as English and the units of the wire."""
+        """Reader of a `marker`; its unknown parts count as English and the units of the wire."""
         code = marker.partition(".")[0]
         return cls(code if code in LANGUAGES else "en", units.codes_of(marker))
 
@@ -61,7 +61,7 @@ class Reader:
 
     @property
     def preset(self) -> str:
-        """Name of the preset that these units are, or blank."""
+        """Name of the preset with these units, or blank."""
         return next((name for name, codes in units.PRESETS.items() if set(codes) == set(self.units)), "")
 
     @property
@@ -81,16 +81,16 @@ class Reader:
         return translations(self.language).gettext(english) if english else ""
 
     def plural(self, one: str, many: str, number: int) -> str:
-        """A text that depends on a number."""
+        """A text in the singular or plural of a number."""
         return translations(self.language).ngettext(one, many, number)
 
-    def told(self, sentence: Sentence) -> str:
+    def sentence(self, sentence: Sentence) -> str:
         """A sentence in the reader's language and units."""
         return sentence.render(self.text, self.quantity)
 
     def source(self, source: str) -> str:
-        """Where a figure of the catalogue or the limit of a check comes from, in short: `table 12.1, p. 12`."""
-        return self.told(source_sentence(source))
+        """Short source of a catalogue's figure or of a check's limit: `table 12.1, p. 12`."""
+        return self.sentence(source_sentence(source))
 
     def translated(self, texts: Mapping[str, str]) -> list[tuple[str, str]]:
         """Options of a choice: codes with their texts."""
@@ -109,31 +109,31 @@ class Reader:
     # --- Units --------------------------------------------------------------------------------------------------------
 
     def measure(self, unit: str) -> Measure:
-        """How a quantity in a unit of the wire, given as suffix or symbol, is shown."""
+        """Measure of a unit of the wire, given as suffix or symbol, in the reader's units."""
         return units.measure(unit, self.units)
 
     def unit(self, unit: str) -> str:
-        """Symbol of the unit that the reader sees in place of a unit of the wire, given as suffix or symbol."""
+        """Symbol of the reader's unit for a unit of the wire, given as suffix or symbol."""
         return self.text(self.measure(unit).symbol)
 
     def value(self, value: float | None, unit: str) -> float | None:
-        """A number of the wire in the unit that the reader sees."""
-        return None if value is None else self.measure(unit).shown(value)
+        """A number of the wire in the reader's unit."""
+        return None if value is None else self.measure(unit).number(value)
 
     # --- Numbers ------------------------------------------------------------------------------------------------------
 
     def figure(self, value: float | None, unit: str = "", beside: float | None = None) -> str:
         """A number of the wire in the reader's unit; None is a dash.
 
-        As printed if it is short, else to `digits`, but no digit before the decimal mark is lost: with three digits
-        32.0210136 is `32.0`, 1167275.9 `1 167 276`. Hours are whole from 100 on, and above 100 million
-        `> 100 000 000` unless that is `beside` it, too. It has the digits that tell it from the number `beside` it.
+        As printed if it is short, else to `digits`, but with all digits before the decimal mark: with three digits
+        32.0210136 is `32.0`, 1167275.9 `1 167 276`. Hours are whole from 100 on, and above 100 million `> 100 000 000`
+        unless the number `beside` it is that large, too. It has enough digits to differ from the number `beside` it.
         """
         if value is None:
             return NOTHING
         measure = self.measure(unit)
-        number = measure.shown(value)
-        other = None if beside is None else measure.shown(beside)
+        number = measure.number(value)
+        other = None if beside is None else measure.number(beside)
         if unit == HOURS and number > MOST_HOURS and (other is None or other <= MOST_HOURS):
             return f">{GROUP}{self.written(str(MOST_HOURS))}"
         if _is_extreme(number):
@@ -143,11 +143,11 @@ class Reader:
         return self.written(_told_apart(write, number, other, digits))
 
     def distinct(self, value: float, other: float | None, unit: str) -> str:
-        """A number with as many digits as it takes to tell it from another one."""
+        """A number with enough digits to differ from another one."""
         return "∞" if math.isinf(value) else self.figure(value, unit, other)
 
     def exact(self, value: float | None, unit: str = "") -> str:
-        """An input as it was given, or to six digits in another unit; None is a dash."""
+        """An input as given, or to six digits in another unit; None is a dash."""
         if value is None:
             return NOTHING
         measure = self.measure(unit)
@@ -155,10 +155,10 @@ class Reader:
 
     def fixed(self, value: float, unit: str, places: int) -> str:
         """A number of the wire in the reader's unit with as many decimals as its neighbours in a column."""
-        return self.written(f"{self.measure(unit).shown(value):.{places}f}")
+        return self.written(f"{self.measure(unit).number(value):.{places}f}")
 
     def with_unit(self, number: str, unit: str) -> str:
-        """A number as it is written, and the reader's unit behind it; alone where the unit is blank."""
+        """A written number with the reader's unit; without it where the unit is blank."""
         return f"{number}{GROUP}{self.unit(unit)}" if unit and number != NOTHING else number
 
     def quantity(self, quantity: Quantity) -> str:
@@ -166,22 +166,22 @@ class Reader:
         return self.with_unit(self.number(quantity), quantity.unit)
 
     def number(self, quantity: Quantity) -> str:
-        """The number of a quantity in the reader's unit, which stands elsewhere, with every whole digit."""
-        number, digits = self.measure(quantity.unit).shown(quantity.value), quantity.digits
+        """Number of a quantity in the reader's unit, without the unit, with every whole digit."""
+        number, digits = self.measure(quantity.unit).number(quantity.value), quantity.digits
         if quantity.rounding == "nearest" and not _is_extreme(number):
             digits = max(digits, len(f"{abs(number):.0f}"))
         return self.written(rounded(number, digits, quantity.rounding))
 
     def bound(self, quantity: Quantity) -> str:
-        """The number of a quantity as it was given, for a message beside a field that shows the unit."""
+        """Number of a quantity as given, for a message beside a field that shows the unit."""
         return self.exact(quantity.value, quantity.unit)
 
     def percent(self, share: float | None, allowed: float = 1.0) -> str:
-        """A share as a percentage, with as many digits as it takes to tell it from what is allowed."""
+        """A share as a percentage, with enough digits to differ from the allowed one."""
         return NOTHING if share is None else f"{self._percent(100 * share, allowed)}{GROUP}%"
 
     def capped_percent(self, share: float | None, allowed: float = 1.0) -> str:
-        """Percentage without its sign, for a narrow cell: beyond tenfold it matters no more by how much."""
+        """Percentage without its sign, for a narrow cell; beyond tenfold only `>999`."""
         if share is None:
             return NOTHING
         return ">999" if share >= 9.995 else self._percent(100 * share, allowed)
@@ -200,7 +200,7 @@ class Reader:
         return self._scientific(f"{float(mantissa):g}e{exponent}")
 
     def written(self, number: str) -> str:
-        """A number that was rounded already, such as `2e+04` or `-1234.50`, with the reader's marks."""
+        """A rounded number, such as `2e+04` or `-1234.50`, with the reader's marks."""
         exponent = number.partition("e")[2]
         if not exponent:
             return self._marked(number)
@@ -231,13 +231,13 @@ DEFAULT = Reader()
 
 HOURS = "h"
 MOST_HOURS = 100_000_000
-"""Longest life that is written out."""
+"""Longest life in h that is written out."""
 
 MOST_DIGITS = 15
 
 
 def _short(value: float, digits: int) -> str:
-    """A number as it is where it has four digits at most, else to so many, and none before its point is lost."""
+    """A number with all its digits if it has at most four, else to `digits`, with all digits before its point."""
     short = f"{value:.12g}"
     if "e" not in short and len(short.lstrip("-").replace(".", "").lstrip("0")) <= 4:
         return short
@@ -253,9 +253,9 @@ def _exponential(value: float, digits: int) -> str:
 
 
 def _told_apart(write: Callable[[float, int], str], value: float, other: float | None, digits: int) -> str:
-    """A number as it is written with the fewest digits that tell it from another one.
+    """A number written with the fewest digits at which it differs from another one.
 
-    Both would have as many, so that the larger one never reads as the smaller; equal within 1e-12 needs no more.
+    Both get as many digits, so that the larger one never reads as the smaller; numbers equal within 1e-12 need no more.
     """
     if other is not None and math.isfinite(other) and not math.isclose(value, other, rel_tol=1e-12):
         while digits < MOST_DIGITS and float(write(value, digits)) == float(write(other, digits)):
@@ -280,12 +280,12 @@ def _marks(code: str) -> tuple[str, str]:
 
 
 def path_of(code: str) -> Path:
-    """Catalogue of a language."""
+    """Path of a language's catalogue."""
     return FOLDER / code / "LC_MESSAGES/hpn.po"
 
 
 def catalogue(code: str) -> "Catalog":
-    """Catalogue of a language as it stands in its file."""
+    """Catalogue of a language, read from its file."""
     from babel.messages.pofile import read_po
 
     with path_of(code).open("rb") as file:
@@ -294,7 +294,7 @@ def catalogue(code: str) -> "Catalog":
 
 @cache
 def translations(code: str) -> NullTranslations:
-    """Translations of one of LANGUAGES for gettext; raises KeyError for another."""
+    """Translations of one of LANGUAGES for gettext; raises KeyError for any other."""
     if code not in LANGUAGES:
         raise KeyError(code)
     if code == "en":

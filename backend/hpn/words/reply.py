@@ -1,6 +1,7 @@
-"""Base of a typed reply: encoded by msgspec, described by pydantic, and so in the document that FastAPI writes."""
+"""Base of a typed reply: encoded by msgspec, described by pydantic, and thus part of FastAPI's OpenAPI document."""
 
 from collections.abc import Mapping
+from math import isfinite
 from typing import Annotated, Any, get_args, get_type_hints
 
 from msgspec import UNSET, Struct, UnsetType, structs
@@ -15,7 +16,7 @@ Mixed = Annotated[float | str, WithJsonSchema({"description": "A number or a tex
 
 
 def described(named: Mapping[str, Named]) -> ConfigDict:
-    """Settings of a class whose fields are quantities: their sentences and units stand in its JSON Schema."""
+    """Settings of a class with quantities as fields: their sentences and units go into its JSON Schema."""
 
     def describe(schema: dict[str, Any]) -> None:
         for field, entry in schema["properties"].items():
@@ -32,14 +33,15 @@ def described(named: Mapping[str, Named]) -> ConfigDict:
 class Reply(Struct, frozen=True):
     """A reply or part of one. Its class describes fields by `Field` in their types, or by `described` quantities.
 
-    A default is what an old saved reply lacks, but where defaults are left out: a reply of today has every field.
+    A default stands for a field that an old saved reply lacks; a new reply has every field, unless its class omits
+    defaults.
     """
 
     __pydantic_config__ = described({})
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Schema of an object: fields that are always sent, and those that may be left out."""
+        """Schema of an object: fields that are always sent, and optional ones."""
         kinds, sparse = get_type_hints(cls, include_extras=True), cls.__struct_config__.omit_defaults
         fields = {
             field.encode_name: core_schema.typed_dict_field(
@@ -52,7 +54,12 @@ class Reply(Struct, frozen=True):
         return core_schema.typed_dict_schema(fields, cls=cls, ref=ref)
 
 
+def finite(value: float) -> float | None:
+    """A figure of a reply; None for NaN and infinity."""
+    return value if isfinite(value) else None
+
+
 def _sent(kind: Any) -> Any:
-    """Type of a field where it is sent: the first option of one that may be unset."""
+    """Type of a field in a reply: without the unset option."""
     options = get_args(kind)
     return options[0] if UnsetType in options else kind

@@ -1,4 +1,4 @@
-"""Where a figure of the catalogue comes from: the one place that writes this text and reads it again.
+"""Source of a catalogue's figure as text: the only module that writes and reads it.
 
 Copies of the catalogue and the API hold it as text, such as `table 12.1, page 12`.
 """
@@ -13,12 +13,12 @@ _PLACES: Mapping[str, str] = {"table": N_("table {number}"), "section": N_("sect
 
 
 def printed_source(place: str, page: int) -> str:
-    """Source of a figure that the handbook prints, by its key in `sources.csv`."""
+    """Source of a figure printed in the handbook, by its key in `sources.csv`."""
     return f"{place}{_PAGE}{page}"
 
 
 def supplied_source(name: str) -> str:
-    """Source of a figure that a supplement gives."""
+    """Source of a figure from a supplement."""
     return f"{_SUPPLIED}{name}"
 
 
@@ -28,7 +28,7 @@ def is_supplied(source: str) -> bool:
 
 
 def source_sentence(source: str) -> Sentence:
-    """The source for any language, in short: `table 12.1, p. 12`; what is not of the catalogue is a msgid."""
+    """Short source for any language: `table 12.1, p. 12`; any other text is a msgid."""
     if is_supplied(source):
         return Sentence(N_("supplied by the user: {source}"), {"source": source.removeprefix(_SUPPLIED)})
     place, _, page = source.partition(_PAGE)

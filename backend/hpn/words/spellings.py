@@ -1,4 +1,4 @@
-"""Spellings of units: from a unit as people write it to the codes that it may stand for."""
+"""Spellings of units: from a typed unit to its possible codes."""
 
 import unicodedata
 
@@ -6,14 +6,14 @@ from hpn.words.patterns import Pattern
 from hpn.words.units import QUANTITY_OF, UNITS, quantity_of, quotient_of
 
 FREQUENCY = "Hz"
-"""May count turns, or be the electrical frequency of a motor: so many times the turns as it has pairs of poles."""
+"""Unit of turns, or of a motor's electrical frequency, which is the turns times the number of pole pairs."""
 
 _SIGNS = " .·⋅∙•‧・*×"
 """Signs of a product, besides a hyphen."""
 
 LONGEST = 40
 _COMPOSED = 18 * LONGEST
-"""Characters of a unit as somebody writes it, and of the same in compatible characters, 18 for one at most."""
+"""Characters of a typed unit, and after conversion to compatible characters, up to 18 for one."""
 
 _PRODUCT = Pattern(rf"(?<=[A-Za-z])[{_SIGNS}_-]+(?=[A-Za-z])", _COMPOSED)
 _AS_TYPED = str.maketrans({**dict.fromkeys("\N{MINUS SIGN}\N{EN DASH}\N{HYPHEN}", "-"), "μ": "µ"})
@@ -22,13 +22,13 @@ _SQUARE = Pattern(r"(?:\^|\*\*)\(?2\)?$", _COMPOSED)
 _PER = Pattern(r"\.? */ *", _COMPOSED)
 _BESIDE_POWER = Pattern(rf"[{_SIGNS}^()]", _COMPOSED)
 _OF_TEN = Pattern(r"[x×·]? *10\^?\(?-([0-9])\)?[ x×·*]*kg[ ·]*m2", _COMPOSED)
-"""An inertia as data sheets have it: `10⁻⁴ kg·m²` is kg·cm²."""
+"""An inertia as in data sheets: `10⁻⁴ kg·m²` is kg·cm²."""
 
 _POWER = Pattern(r"(.+?)(?:\^|\*\*)?\(?([23])?\)?", _COMPOSED)
 
 
 def _spelling(text: str) -> str:
-    """A unit with one sign for a product and one way of writing `per`: `N.m`, `N-m` and `N·m` are `N·m`."""
+    """A unit with uniform signs for products and for `per`: `N.m`, `N-m` and `N·m` become `N·m`."""
     tight = unicodedata.normalize("NFKC", text).strip().translate(_AS_TYPED)
     inverse = _SUPERSCRIPT.sub("-1", tight)
     if inverse != tight or inverse.endswith("-1"):
@@ -53,21 +53,21 @@ def _plain(word: str) -> list[str]:
 
 
 def _of_torque(word: str) -> list[str]:
-    """A product of force and arm, of which inch and foot may stand first."""
+    """Spellings of a product of force and arm; inch and foot may stand first."""
     force, arm = word.split("·")
     turned = [(arm, force)] if arm in ("in", "ft") else []
     return [spelling for a, b in ((force, arm), *turned) for spelling in (f"{a}·{b}", f"{a}{b}", f"{a}·{b}s")]
 
 
 def _of_inertia(word: str) -> list[str]:
-    """With a square of time a torque for each angular acceleration, else a mass and its arm squared."""
+    """Spellings of a mass and its arm squared, or of a torque per angular acceleration (with a time squared)."""
     return [word, word.replace("·", "")]
 
 
 _FORMS = {"torque": _of_torque, "inertia": _of_inertia}
 
 SPELLINGS = _spellings()
-"""A unit as people write it -> the codes that it may stand for: `1/s` may count revolutions or radians."""
+"""Typed unit -> its possible codes: `1/s` may count revolutions or radians."""
 
 _FOLDED = {
     spelling.casefold(): codes
@@ -79,9 +79,9 @@ _FOLDED = {
 
 
 def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
-    """Codes that a unit as somebody writes it may stand for, of one quantity or any; several where it is ambiguous.
+    """Possible codes of a typed unit, of one quantity or any; several if ambiguous.
 
-    Where no quantity is known, `Hz` is one of speed.
+    Without a quantity, `Hz` is a unit of speed.
     """
     if len(text) > LONGEST:
         return ()
@@ -93,9 +93,9 @@ def codes_for(text: str, quantity: str = "") -> tuple[str, ...]:
 
 
 def codes_in(text: str, unit: str) -> tuple[str, ...]:
-    """Codes that a unit as somebody writes it may stand for in place of a unit of the wire, such as `mm_per_s2`.
+    """Possible codes of a typed unit in place of a unit of the wire, such as `mm_per_s2`.
 
-    None for a pure number. Of a quotient the code of the dividend, with that of another divisor: `Nm/arcmin`.
+    Empty for a pure number. For a quotient the code of the dividend, with a different divisor's code: `Nm/arcmin`.
     """
     wire = quotient_of(unit)
     if not wire.divisor:

@@ -14,12 +14,12 @@ _FORMULA = re.compile(rf"({_INDEXED}|\b{_LETTER}\b)")
 
 
 def formula(text: str) -> list[Part]:
-    """A formula, in which single letters are symbols too."""
+    """Parts of a formula, in which single letters are symbols, too."""
     return _parts(_FORMULA, text)
 
 
 def sentence(text: str) -> list[Part]:
-    """A sentence, in which only what has an index is a symbol, and a ratio i that divides one."""
+    """Parts of a sentence, in which only letters with an index are symbols, and the ratio i as a divisor of one."""
     return _parts(_SENTENCE, text)
 
 

@@ -52,7 +52,7 @@ LIFE_BASES: Mapping[str, str] = {"L50": N_("L50 (50 % survive)"), "L10": N_("L10
 """Bases of a bearing life."""
 
 FOR_OTHERS = N_("others")
-"""All sizes that have no figure of their own, beside those that have."""
+"""All sizes without their own figure, beside those with one."""
 
 POSITION_ERROR_AT: Mapping[str, str] = {"cycle": N_("over the whole cycle"), "rest": N_("at rest alone")}
 """Parts of the cycle over which the position error counts."""
@@ -60,7 +60,7 @@ POSITION_ERROR_AT: Mapping[str, str] = {"cycle": N_("over the whole cycle"), "re
 
 @dataclass(frozen=True, slots=True)
 class Ranking:
-    """An order of the suitable gears: its name, its choice in the form, and its first gear on page and in report."""
+    """An order of the suitable gears: its name, its option in the form, and its sentences on the first gear."""
 
     name: str
     choice: str
@@ -69,7 +69,7 @@ class Ranking:
 
 
 JUDGED: Mapping[bool, str] = {False: N_("by the values as given"), True: N_("by the worst case")}
-"""How gears are judged, by `over_tolerance`."""
+"""Basis of the judgement, by `over_tolerance`."""
 
 
 RANKINGS: Mapping[str, Ranking] = {

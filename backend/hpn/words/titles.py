@@ -1,4 +1,4 @@
-"""Rules of the texts by which something is called: titles, references, names of phases and moves."""
+"""Rules for texts that name something: titles, references, names of phases and moves."""
 
 import re
 import unicodedata
@@ -14,32 +14,32 @@ LONGEST_TITLE, LONGEST_NAME, LONGEST_NOTE = 200, 40, 2000
 """Characters of a title, of the name of a phase or a move, and of a note."""
 
 CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff]")
-"""Control characters, line separators, marks that turn the direction of the text around them, and no characters."""
+"""Control characters, line separators, marks that change the direction of text, and noncharacters."""
 
 NO_CONTROLS = N_("must not contain control characters or line breaks")
 
 HIDDEN = re.compile("[\u200b\u2060\ufeff\U000e0000-\U000e007f]")
-"""Invisible characters that no word needs: with them two titles look alike. Joiners (U+200C, U+200D) are spelling."""
+"""Invisible characters that no word needs: they make two titles look alike. Joiners (U+200C, U+200D) are spelling."""
 
 MOST_MARKS = 4
-"""Combining marks one after another that a letter has in any script."""
+"""Combining marks, at most, in a row on one letter in any script."""
 
 SCHEMA_CONTROLS = "\\u0000-\\u001f\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069\\ufffe\\uffff"
 """`CONTROLS` between the brackets of a pattern in JSON Schema."""
 
 
 def faults_of(text: str, longest: int = LONGEST_TITLE) -> Iterator[Sentence]:
-    """Faults of a text as a title of so many characters."""
+    """Yield faults of a text as a title of at most `longest` characters."""
     if CONTROLS.search(text):
         yield Sentence(NO_CONTROLS)
     if len(text.strip()) > longest:
         yield Sentence(N_("must have at most {most} characters"), {"most": str(longest)})
-    else:  # to compose a long text can take long
+    else:  # composing a long text can take long
         yield from _hidden_in(text.strip())
 
 
 def _hidden_in(text: str) -> Iterator[Sentence]:
-    """Characters by which a text looks like another."""
+    """Yield faults that make a text look like another."""
     if match := HIDDEN.search(text):
         yield Sentence(N_("must not contain the invisible character {character}"), {"character": _named(match[0])})
     count = 0
@@ -52,7 +52,7 @@ def _hidden_in(text: str) -> Iterator[Sentence]:
 
 
 def _named(character: str) -> str:
-    """Code and name of a character that can't be shown by itself: U+200B ZERO WIDTH SPACE."""
+    """Code and name of a character that is not visible by itself: U+200B ZERO WIDTH SPACE."""
     return f"U+{ord(character):04X} {unicodedata.name(character, '')}".rstrip()
 
 
@@ -70,7 +70,7 @@ Title = Annotated[
     AfterValidator(_valid),
     _VISIBLE,
 ]
-"""One line of text by which something is called: it has nothing in it that nobody sees. An empty one counts as none."""
+"""One line of text that names something, without invisible characters. An empty one becomes None."""
 
 Name = Annotated[
     str,
@@ -78,7 +78,7 @@ Name = Annotated[
     AfterValidator(_valid),
     _VISIBLE,
 ]
-"""A title that is short enough for a cell of a table."""
+"""A title short enough for a table's cell."""
 
 
 def _without_controls(text: str) -> str | None:
@@ -92,7 +92,7 @@ Note = Annotated[
     StringConstraints(strip_whitespace=True, max_length=LONGEST_NOTE),
     AfterValidator(_without_controls),
 ]
-"""Some lines of text. An empty one counts as none."""
+"""Some lines of text. An empty one becomes None."""
 
 
 def is_title(text: str, longest: int = LONGEST_TITLE) -> bool:
@@ -101,10 +101,10 @@ def is_title(text: str, longest: int = LONGEST_TITLE) -> bool:
 
 
 def row_label(place: int, name: str | None) -> str:
-    """Label of a row of a table of phases or moves: its number, and its name where it has one, `3 lift`."""
+    """Label of a row in a table of phases or moves: its number and its name, if any, `3 lift`."""
     return f"{place + 1} {name}" if name else str(place + 1)
 
 
 def numbered(place: int, name: str | None) -> str:
-    """Number of a phase or a move in a sentence, with its name where it has one: `3 (lift)`."""
+    """Number of a phase or a move for a sentence, with its name, if any: `3 (lift)`."""
     return f"{place + 1} ({name})" if name else str(place + 1)

@@ -1,4 +1,4 @@
-"""Units: the suffix of a field's name such as `_Nm`, and the units that people choose and type.
+"""Units: the suffix of a field's name such as `_Nm`, and the units that users choose and type.
 
 Units are converted exactly, by pint.
 """
@@ -15,7 +15,7 @@ from hpn.words.patterns import Pattern
 
 
 def N_(text: str) -> str:
-    """Mark a text for the translators; it is translated where it is shown."""
+    """Mark a text for the translators; it is translated where it appears."""
     return text
 
 
@@ -47,12 +47,12 @@ SYMBOLS = {
     "kW_per_s": "kW/s",
     "kW": "kW",
 }
-"""Unit suffix of a field name -> the symbol a reader sees."""
+"""Unit suffix of a field name -> symbol for a reader."""
 
 _LONGEST_FIRST = sorted(SYMBOLS, key=len, reverse=True)
 
 
-@lru_cache(maxsize=1024)  # names may be a stranger's: what they fill has a limit
+@lru_cache(maxsize=1024)  # names may come from a request: the cache has a limit
 def suffix_of(field_name: str) -> str:
     """Unit suffix that ends a field name (`torque_Nm` -> `Nm`), blank for a field without a unit."""
     return next((unit for unit in _LONGEST_FIRST if field_name.endswith("_" + unit)), "")
@@ -63,14 +63,14 @@ def symbol_of(field_name: str) -> str:
     return SYMBOLS.get(suffix_of(field_name), "")
 
 
-# --- Units that people choose and type --------------------------------------------------------------------------------
+# --- Units that users choose and type ---------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit: its symbol, its name in pint, and further spellings, apart by blanks; a page may show it where `shown`.
+    """A unit: its symbol, its name in pint, and further spellings separated by blanks; pages offer it if `shown`.
 
-    A torque is spelled as force and arm, an inertia as mass and arm squared: `spellings.py` has what follows from that.
+    A torque is spelled as force and arm, an inertia as mass and arm squared: `spellings.py` derives the other forms.
     """
 
     symbol: str
@@ -157,7 +157,9 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
         "min": Unit("min", "minute", "min min. mins minute minutes Minuten"),
         "h": Unit("h", "hour", "h hr hrs hour hours Std Std. Stunde Stunden heures"),
         "day": Unit("d", "day", "d day days Tag Tage jour jours"),
-        "year": Unit("yr", "year", "yr yrs year years Jahr Jahre"),  # 365.25 days, which is said where a life is typed
+        "year": Unit(
+            "yr", "year", "yr yrs year years Jahr Jahre"
+        ),  # 365.25 days, as the page says where a life is typed
     },
     "inertia": {
         "kgm2": Unit("kg·m²", "kilogram * meter ** 2", "kg·m2"),
@@ -177,7 +179,7 @@ UNITS: Mapping[str, Mapping[str, Unit]] = {
     },
     "frequency": {"Hz": Unit("Hz", "hertz", "Hz"), "kHz": Unit("kHz", "kilohertz", "kHz")},
 }
-"""Kind of quantity -> codes of the units in which it may be given."""
+"""Kind of quantity -> codes of its possible units."""
 
 NAMES = {
     "torque": N_("Torque"),
@@ -188,7 +190,7 @@ NAMES = {
     "angle": N_("Angle"),
     "temperature": N_("Temperature"),
 }
-"""Kinds of quantities whose unit a reader may choose."""
+"""Kinds of quantities with a unit that the reader may choose."""
 
 CHOICES = {name: {code: unit.symbol for code, unit in UNITS[name].items() if unit.shown} for name in NAMES}
 """Kind of quantity -> codes of its units for display, with their symbols; the first is the wire's."""
@@ -196,7 +198,7 @@ CHOICES = {name: {code: unit.symbol for code, unit in UNITS[name].items() if uni
 READ = {
     name: CHOICES.get(name, {}) | {code: unit.symbol for code, unit in units.items()} for name, units in UNITS.items()
 }
-"""Kind of quantity -> codes of all units in which it may be given, with their symbols, those for display first."""
+"""Kind of quantity -> codes of all its possible units, with their symbols, those for display first."""
 
 QUANTITY_OF = {code: name for name, codes in READ.items() for code in codes}
 """Code of a unit -> kind of quantity."""
@@ -205,7 +207,7 @@ PRESETS = {"SI": (), "US": ("lb_in", "lbf", "lb", "in", "degF")}
 """Presets of all units."""
 
 CODES = tuple(code for units in CHOICES.values() for code in list(units)[1:])
-"""Codes of the units that differ from the wire's, in the order in which a cookie gives them."""
+"""Codes of the units that differ from the wire's, in the order of a cookie."""
 
 _SUFFIXES = {symbol: suffix for suffix, symbol in SYMBOLS.items()}
 _OF_CODE = {code: next(iter(units)) for units in CHOICES.values() for code in units}
@@ -226,14 +228,14 @@ class Measure:
         """True for the wire's own unit."""
         return self.factor == 1 and self.offset == 0
 
-    def shown(self, value: float) -> float:
+    def number(self, value: float) -> float:
         """A number of the wire in this unit."""
         return value if self.same else value * float(self.factor) + float(self.offset)
 
     def wire(self, text: str) -> float:
         """Number typed in this unit, converted to the wire's.
 
-        Twelve digits are kept, or all of them where more than thirteen are given, so that every float can be written.
+        Twelve digits are kept, or all of them if more than thirteen are given, so that every float can be written.
         """
         try:
             value = float((Fraction(text) - self.offset) / self.factor)
@@ -242,7 +244,7 @@ class Measure:
         return value if _digits(text) > 13 else float(f"{value:.12g}")
 
     def written(self, value: float, digits: int) -> str:
-        """A number of the wire in this unit, correctly rounded to so many digits, as plain as it can be."""
+        """A number of the wire in this unit, correctly rounded to `digits`, in the plainest notation."""
         exact = Fraction(repr(value)) * self.factor + self.offset
         rounded = Context(prec=digits, rounding=ROUND_HALF_EVEN).divide(
             Decimal(exact.numerator), Decimal(exact.denominator)
@@ -253,11 +255,11 @@ class Measure:
         return f"{rounded.normalize():e}".replace("e+", "e")
 
     def shortest(self, value: float) -> str:
-        """The shortest text that `wire` reads as exactly this number."""
+        """Shortest text that `wire` reads as exactly this number."""
         for text in (self.written(value, digits) for digits in range(1, 50)):
             if self.wire(text) == value:
                 return text
-        # Few digits that stand for many: zeros say that all of them count.
+        # A short text for a number with more digits: added zeros make all digits count.
         mantissa, e, exponent = text.partition("e")
         return mantissa + ("" if "." in text else ".") + "0" * (14 - _digits(text)) + e + exponent
 
@@ -269,7 +271,7 @@ def _digits(text: str) -> int:
 
 
 def measure(unit: str, chosen: tuple[str, ...]) -> Measure:
-    """Unit that a unit of the wire (suffix `Nm_per_rad` or symbol `Nm/rad`) is shown in, for the codes chosen."""
+    """Measure in which a unit of the wire (suffix `Nm_per_rad` or symbol `Nm/rad`) is shown, for the chosen codes."""
     suffix = unit if unit in SYMBOLS else _SUFFIXES.get(unit, unit)
     return _measure(suffix, chosen)
 
@@ -282,9 +284,9 @@ def _measure(suffix: str, chosen: tuple[str, ...]) -> Measure:
 
 @cache
 def entered(suffix: str, code: str) -> Measure:
-    """Measure of a number that is given in the unit of a code, for a unit of the wire with the same dimension.
+    """Measure of a number in the unit of a code, for a unit of the wire with the same dimension.
 
-    Of a quotient the code may be that of the dividend alone, as in `lb_in` for `lb·in/rad`, or of both, `Nm/arcmin`.
+    For a quotient the code may be that of the dividend only, as in `lb_in` for `lb·in/rad`, or of both, `Nm/arcmin`.
     """
     wire = quotient_of(suffix)
     over, _, under = code.partition("/")
@@ -296,9 +298,9 @@ def entered(suffix: str, code: str) -> Measure:
 
 
 class Quotient(NamedTuple):
-    """Unit by the codes of its parts, `mm` and `s` with power 2 of `mm_per_s2`; the divisor is blank where it has none.
+    """Unit by the codes of its parts, `mm` and `s` with power 2 for `mm_per_s2`; the divisor is blank without one.
 
-    The dividend of what has no code, such as a percentage, is its suffix.
+    A dividend without a code, such as a percentage, is its suffix.
     """
 
     dividend: str
@@ -326,14 +328,14 @@ _PER = Pattern(r"(\w+)_per_([a-z]+)([23]?)", 60)
 
 @lru_cache(maxsize=1024)
 def quotient_of(suffix: str) -> Quotient:
-    """Parts of a unit of the wire; one that has a code of its own, such as `rad_per_s`, is no quotient."""
+    """Parts of a unit of the wire; a unit with its own code, such as `rad_per_s`, is no quotient."""
     parts = None if suffix in QUANTITY_OF else _PER.fullmatch(suffix)
     return Quotient(*parts.groups()) if parts else Quotient(suffix)
 
 
 @cache
 def _registry() -> Any:
-    import pint  # takes a second, which readers in the units of the wire never need
+    import pint  # takes a second; readers in the units of the wire never need it
 
     return pint.UnitRegistry(non_int_type=Fraction)
 

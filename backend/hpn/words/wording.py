@@ -1,7 +1,7 @@
-"""Sentences with numbers in them: an English template, and values that each reader sees in their own units."""
+"""Sentences with numbers: an English template, and values that each reader sees in their own units."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, Union
 
@@ -15,13 +15,13 @@ Rounding = Literal["nearest", "down", "up"]
 
 
 class MendableError(Exception):
-    """Something that the caller or the operator can mend; the text names it and says what would be right."""
+    """An error that the caller or the operator can mend; its text names the fault and the remedy."""
 
 
 class Quantity(Struct, frozen=True, tag=True):
-    """A number with the suffix of its unit, rounded for reading where it is shown; a blank unit is a pure number.
+    """A number with the suffix of its unit, rounded where it is shown; a blank unit means a pure number.
 
-    A bound is rounded to the safe side, in whatever unit it is shown.
+    A bound is rounded to the safe side, in any unit.
     """
 
     value: float
@@ -30,7 +30,7 @@ class Quantity(Struct, frozen=True, tag=True):
     rounding: Rounding = "nearest"
 
     def __str__(self) -> str:
-        """English, in the unit of the wire; a large number in full, `5830` in place of `5.83e+03`."""
+        """English text in the unit of the wire; a large number in full, `5830` instead of `5.83e+03`."""
         number = rounded(self.value, self.digits, self.rounding)
         if "e+" in number and abs(self.value) < 1e12:
             number = f"{float(number):.0f}"
@@ -38,11 +38,11 @@ class Quantity(Struct, frozen=True, tag=True):
 
 
 def rounded(value: float, digits: int, rounding: Rounding = "nearest") -> str:
-    """A number to so many significant digits; a bound never passes over to the wrong side by its rounding."""
+    """A number to `digits` significant digits; rounding never moves a bound to the wrong side."""
     text = f"{value:.{digits}g}"
     if rounding == "nearest" or not math.isfinite(value):
         return text
-    # A number that is off by an error of floating point only is exact: 107 stays 107, up and down.
+    # Floating-point errors don't count: 107 stays 107, up and down.
     beyond = float(text) > value * (1 + 1e-14) if rounding == "down" else float(text) < value * (1 - 1e-14)
     if not beyond:
         return text
@@ -54,14 +54,14 @@ MOST_DECIMALS = 10
 
 
 def telling_decimals(value: float, bound: float, least: int) -> int:
-    """Decimals, `least` at least, with which a percentage, rounded, lies on its own side of a bound and of 100.
+    """Decimals, at least `least`, at which a rounded percentage stays on its own side of a bound and of 100.
 
     Within a relative 1e-12 a value is on neither side, as in the checks.
     """
     marks = [mark for mark in (bound, 100.0) if abs(value - mark) <= 1 + _ROOM * abs(mark)]
     decimals = least
     while decimals < MOST_DECIMALS and any(_side(round(value, decimals), mark) != _side(value, mark) for mark in marks):
-        decimals += 1  # to round it further away than by 1 from a mark moves it by half at most
+        decimals += 1  # more than 1 away from a mark: rounding moves a value by half at most
     return decimals
 
 
@@ -75,10 +75,10 @@ _ROOM = 1e-12
 
 
 class Typed(Struct, frozen=True, tag=True):
-    """A number to type in place of another text, with the unit behind it; a form offers one that is `whole`.
+    """A number to type instead of another text, with the unit behind it; a form offers it if it is `whole`.
 
-    It is in plain notation until the page that shows it gives it its reader's decimal mark. One that is not whole
-    belongs to a part of the text, such as a number in a sum.
+    It is in plain notation until a page writes it with the reader's decimal mark. A number that is not whole replaces
+    only a part of the text, such as a number in a sum.
     """
 
     number: str
@@ -93,7 +93,7 @@ Value = Union[Quantity, Typed, str, int, "Sentence"]
 
 
 class Sentence(Struct, frozen=True, tag=True):
-    """An English template (msgid for translation) and the values in it, among them other sentences.
+    """An English template (msgid for translation) and its values, which may be other sentences.
 
     `translated` names values that are msgids.
     """
@@ -123,7 +123,7 @@ class Sentence(Struct, frozen=True, tag=True):
 
     @property
     def offers(self) -> tuple[str, ...]:
-        """Texts that a field may take in place of what stands in it."""
+        """Texts that may replace the content of a field."""
         of_parts = (value.offers for value in self.values.values() if isinstance(value, Sentence))
         own = (str(value) for value in self.values.values() if isinstance(value, Typed) and value.whole)
         return (*own, *(offer for offers in of_parts for offer in offers))
@@ -139,8 +139,19 @@ def _marked(value: Value, decimal: str) -> Value:
     return value.marked(decimal) if isinstance(value, Sentence) else value
 
 
+def first_of(names: Iterable[object], most: int) -> str:
+    """Names in a row, with `…` in place of those beyond `most`."""
+    texts = list(map(str, names))
+    return ", ".join([*texts[:most], "…"] if len(texts) > most else texts)
+
+
+def shortened(lines: Sequence[str], most: int) -> list[str]:
+    """The first lines, and a line with the count of the rest."""
+    return [*lines[:most], *([f"and {len(lines) - most} more"] if len(lines) > most else [])]
+
+
 def listed(parts: Sequence[Sentence], template: str = "{first}, {rest}") -> Sentence:
-    """Sentences in a row, one behind the other by a template with `first` and `rest`."""
+    """Sentences in a row, joined by a template with `first` and `rest`."""
     *early, joined = parts
     for part in reversed(early):
         joined = Sentence(template, {"first": part, "rest": joined})
@@ -149,11 +160,11 @@ def listed(parts: Sequence[Sentence], template: str = "{first}, {rest}") -> Sent
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """Name of a quantity (an English msgid), its symbol, a sentence on it, and the handbook's equation that gives it.
+    """Name of a quantity (an English msgid), its symbol, a sentence on it, and the handbook's equation for it.
 
-    `caveat` (a msgid too) is a warning that belongs beside it everywhere.
+    `caveat` (a msgid too) is a warning that always goes with it.
 
-    An index stands behind an underscore: `T_av`. Of an input the sentence stands in the application model.
+    An index stands behind an underscore: `T_av`. The sentence of an input is in the application model.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""`make bench`: what a user feels, measured side by side in one run and written to bench-results.json.
+"""`make bench`: waiting times of users, measured side by side in one run and written to bench-results.json.
 
 Beside this checkout stand a plain FastAPI service (`plain.py`) and, with `make bench BESIDE=folder`, another installed
 checkout, such as the one before a change; `make bench ONLY="replies edits"` measures a part. Nothing asserts a time.
@@ -27,7 +27,7 @@ IDLE_SECONDS = 2
 
 
 def main() -> None:
-    """Measure what is asked for, or everything."""
+    """Measure the named parts, or everything."""
     options = _options()
     checkouts = {"here": Checkout("here", HERE)}
     if options.beside:
@@ -55,7 +55,7 @@ def _options() -> argparse.Namespace:
 def _measured(
     checkouts: Mapping[str, Checkout], folder: Path, wanted: Sequence[str]
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Name and outcome of each measure that is wanted; the servers run only for those that need them."""
+    """Name and outcome of each requested measure; the servers run only for measures that need them."""
     for name, measure in (
         ("first_starts", starts.first_starts),
         ("commands", starts.commands),
@@ -81,7 +81,7 @@ def _measured(
 
 
 def _idle(servers: Mapping[str, Server]) -> dict[str, Any]:
-    """Memory of a server that has answered one request."""
+    """Memory of a server after one request."""
     for server in servers.values():
         server.ask("/api/v1/select", select_body(0, EVERY))
     time.sleep(IDLE_SECONDS)
@@ -90,7 +90,7 @@ def _idle(servers: Mapping[str, Server]) -> dict[str, Any]:
 
 
 def _replies(servers: Mapping[str, Server], folder: Path) -> dict[str, Any]:
-    """Replies beside the plain service, which takes its ratings and texts from this checkout's."""
+    """Replies beside the plain service, which takes ratings and texts from this checkout's replies."""
     (folder / "catalogue.json").write_bytes(servers["here"].ask("/api/v1/catalogue"))
     (folder / "reply.json").write_bytes(servers["here"].ask("/api/v1/select", select_body(0, EVERY)))
     with plain_service(folder) as plain:

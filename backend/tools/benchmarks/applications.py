@@ -1,4 +1,4 @@
-"""Bodies to send, each with a torque of its own, so that nothing could be answered from a cache."""
+"""Request bodies, each with a torque of its own, so that no cache could answer."""
 
 import json
 from typing import Any
@@ -10,19 +10,19 @@ CASES = {"5_gears": FIVE, "64_gears": EVERY}
 
 
 def select_body(number: int, restriction: dict[str, Any]) -> bytes:
-    """The worked example with a torque of its own."""
+    """Worked example with a torque of its own."""
     phases = [_phase(40 + number * 1e-3, 250, 0.3), _phase(32, 500, 3.0), _phase(20, 250, 0.4)]
     cycle = {"phases": phases, "pause_s": 4.0}
     return json.dumps({"duty_cycle": cycle, "emergency_stop": {"torque_Nm": 200}} | restriction).encode()
 
 
 def save_body(number: int, restriction: dict[str, Any]) -> bytes:
-    """The same, to be saved."""
+    """Worked example as a request to save."""
     return b'{"application":' + select_body(number, restriction) + b"}"
 
 
 def axis(number: int, phases: int) -> dict[str, Any]:
-    """One axis of a batch."""
+    """Axis of a batch."""
     cycle = [_phase(20 + (number + step) % 400 / 10, 100.0 + 20 * step, 0.3 + step / 10) for step in range(phases)]
     return {"reference": f"axis-{number}", "duty_cycle": {"phases": cycle, "pause_s": 4.0}}
 

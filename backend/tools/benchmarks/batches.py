@@ -1,4 +1,4 @@
-"""A batch of ten thousand axes of ten phases each, as one JSON document and as a stream of lines."""
+"""Batch of ten thousand axes with ten phases each, as one JSON document and as a stream of lines."""
 
 import http.client
 import json
@@ -17,7 +17,7 @@ TURNS = 5
 
 
 def measure(servers: Mapping[str, Server]) -> dict[str, Any]:
-    """Axes per second by form of the batch, and the most memory that a server has held by then."""
+    """Axes per second by form of the batch, and each server's peak memory until then."""
     axes = [axis(number, PHASES) for number in range(AXES)]
     bodies = {
         "json": ("application/json", json.dumps({"applications": axes}).encode()),

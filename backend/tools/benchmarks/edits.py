@@ -1,6 +1,6 @@
-"""An edit on the page in real Chromium: from the key press to the settled result, and the server's share of it.
+"""Edits on the page in real Chromium: time from the key press to the settled result, and the server's share of it.
 
-Settled is two frames after the last swap that the key press has led to, so the page's own wait for a next key counts.
+A result is settled two frames after the last swap due to the key press; so the page's wait for a next key counts.
 """
 
 import shutil
@@ -16,7 +16,7 @@ from tools.benchmarks.variants import Server
 EDITS = 8
 TURNS = 7
 QUIET_MS = 60
-"""Without a request under way and without another swap, before an edit counts as settled."""
+"""Milliseconds without an open request and without another swap before an edit counts as settled."""
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost"
@@ -51,7 +51,7 @@ Edits = list[tuple[float, float]]
 
 
 def measure(servers: Mapping[str, Server]) -> dict[str, Any]:
-    """Milliseconds by number of gears: from key press to settled, and of those until the server begins to answer."""
+    """Milliseconds by number of gears: from key press to settled, and the part until the server begins to answer."""
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=path, args=[OFFLINE])
@@ -85,7 +85,7 @@ def _open(browser: Browser, address: str) -> Page:
 
 
 def _edit(page: Page, number: int) -> tuple[float, float]:
-    """One key press: the last digit of a torque is written over, each time with another."""
+    """Times of one key press, which overwrites the last digit of a torque with another one each time."""
     page.bring_to_front()
     field = page.locator('[name="T"]').nth(1)
     field.focus()

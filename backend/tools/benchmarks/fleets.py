@@ -1,4 +1,4 @@
-"""A fleet from Parquet to Parquet beside reading and writing alone; its kernel beside a plain loop and compiled C."""
+"""Fleet from Parquet to Parquet beside mere reading and writing; its kernel beside a plain loop and compiled C."""
 
 import ctypes
 import math
@@ -28,14 +28,14 @@ from tools.benchmarks.variants import Checkout
 
 AXES, PHASES, UNIT_ROWS = 1_000_000, 10, 50_000
 TIMES = 10
-"""How many times as many axes the large fleet has."""
+"""Number of axes of the large fleet, as a multiple of AXES."""
 
 TURNS = 3
 KERNEL_AXES, LOOP_AXES = 20_480, 200
 
 
 def measure(checkouts: Mapping[str, Checkout], folder: Path) -> dict[str, Any]:
-    """Seconds, axes per second and memory by number of workers, with the ratios that matter; then the kernel."""
+    """Seconds, axes per second and memory by number of workers, with their ratios; then the kernel."""
     hpn = checkouts["here"].hpn
     fleet = written(folder / "fleet.parquet", AXES)
     workers = sorted({1, os.cpu_count() or 1})
@@ -61,7 +61,7 @@ def _turn(run: Callable[[], float]) -> Callable[[int], float]:
 
 
 def written(path: Path, axes: int) -> Path:
-    """Axes in list form whose checks all matter, in row groups."""
+    """File of axes in list form, in row groups, whose checks all matter."""
     chance = np.random.default_rng(17)
     with pq.ParquetWriter(path, random_axes(chance, 1).schema) as writer:
         for start in range(0, axes, UNIT_ROWS):
@@ -108,7 +108,7 @@ def _seconds(hpn: str, fleet: Path, folder: Path, workers: int) -> float:
 
 
 def _files_alone(fleet: Path, output: Path, workers: int) -> float:
-    """Seconds that reading the input in so many processes and writing the output take, processes running already."""
+    """Seconds of reading the input in `workers` running processes and of writing the output."""
     answers = pq.read_table(output)
     with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
         list(pool.map(_nothing, range(workers)))
@@ -132,7 +132,7 @@ def _read(fleet: Path, unit: int) -> int:
 
 
 Sized = tuple[NDArray[np.int32], NDArray[np.int32]]
-"""Place of the selected gear, -1 where there is none, and how many are suitable, of each axis."""
+"""For each axis, the place of the selected gear, -1 without one, and the number of suitable gears."""
 
 ASKED = ("duty_cycle.pause_s", "emergency_stop.torque_Nm", "requirements.life_h")
 RATINGS = (
@@ -147,7 +147,7 @@ RATINGS = (
 
 
 def kernel(folder: Path) -> dict[str, Any]:
-    """Microseconds per axis of all gears and six checks: numpy as the fleet does it, a plain loop, and C."""
+    """Microseconds per axis for all gears and six checks: numpy as in a fleet, a plain loop, and C."""
     catalogue = load_catalogue()
     table = random_axes(np.random.default_rng(1), KERNEL_AXES)
     axes, few = Axes(table, catalogue), Axes(table.slice(0, LOOP_AXES), catalogue)
@@ -179,7 +179,7 @@ def _timed(run: Callable[[], Sized]) -> Callable[[int], float]:
 
 
 def by_numpy(axes: Axes, catalogue: Catalogue) -> Sized:
-    """The engine, in the chunks of a fleet."""
+    """Result of the engine, in the chunks of a fleet."""
     selected, suitable = (np.empty(len(axes.counts), np.int32) for _ in range(2))
     for gears, rows in axes.chunks():
         evaluation = evaluate(axes.duty(rows), gears, catalogue)
@@ -190,7 +190,7 @@ def by_numpy(axes: Axes, catalogue: Catalogue) -> Sized:
 
 
 def by_loop(axes: Axes, catalogue: Catalogue) -> Sized:
-    """The first version that anyone would write: a loop over axes, phases and gears."""
+    """Result of a loop over axes, phases and gears, the first version that anyone would write."""
     cycles, asked, gears = (values.tolist() for values in _arrays(axes, catalogue))
     rated_speed, rated_life = catalogue.rated_input_speed_rpm, catalogue.life_at_rated_torque_h
     selected, suitable = [], []
@@ -214,7 +214,7 @@ def by_loop(axes: Axes, catalogue: Catalogue) -> Sized:
 
 
 def compiled(compiler: str, folder: Path) -> Any:
-    """The function of kernel.c, compiled for this processor."""
+    """Function of kernel.c, compiled for this processor."""
     library = folder / "kernel.so"
     options = ["-O3", "-march=native", "-shared", "-fPIC", "-o", str(library)]
     subprocess.run([compiler, *options, str(Path(__file__).with_name("kernel.c")), "-lm"], check=True)
@@ -222,7 +222,7 @@ def compiled(compiler: str, folder: Path) -> Any:
 
 
 def by_c(size: Any, axes: Axes, catalogue: Catalogue) -> Sized:
-    """The same, compiled."""
+    """Result of the compiled function."""
     selected, suitable = (np.empty(len(axes.counts), np.int32) for _ in range(2))
     cycles, asked, gears = _arrays(axes, catalogue)
     size(
@@ -241,12 +241,12 @@ def by_c(size: Any, axes: Axes, catalogue: Catalogue) -> Sized:
 
 
 def _arrays(axes: Axes, catalogue: Catalogue) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Phases by magnitude (axes, phases, 3), what is asked for (axes, 3), figures of the gears (gears, 7)."""
+    """Phases by magnitude (axes, phases, 3), requirements (axes, 3), figures of the gears (gears, 7)."""
     duty = axes.duty(np.arange(len(axes.counts)))
     series = (duty.phases.torque_Nm, duty.phases.speed_rpm, duty.phases.duration_s)
     columns = catalogue.restricted(None, None).columns
     return (
         np.ascontiguousarray(np.stack([values[:, 0] for values in series], axis=-1)),
-        np.ascontiguousarray(np.concatenate([duty.asked[name] for name in ASKED], axis=-1)),
+        np.ascontiguousarray(np.concatenate([duty.inputs[name] for name in ASKED], axis=-1)),
         np.ascontiguousarray(np.stack([getattr(columns, name) for name in RATINGS], axis=-1)),
     )

@@ -1,4 +1,4 @@
-/* The checks of a fleet in compiled code, beside which the benchmark sets the numpy engine: what is left to gain. */
+/* Checks of a fleet in compiled code: the benchmark compares the numpy engine with them, to show the gain left. */
 #include <math.h>
 
 static double power(double r) { return r * r * r * cbrt(r); }

@@ -1,6 +1,5 @@
-"""A machine of ten thousand axes: showing, sorting and filtering its page, listing its axes, opening one and saving it,
-and comparing what was changed with the revision of before.
-"""
+"""Machine of ten thousand axes: its page shown, sorted and filtered, its axes listed, an axis opened and saved, and the
+changes compared with the revision before."""
 
 import json
 import statistics
@@ -30,7 +29,7 @@ ACTIONS: Mapping[str, str] = {
 
 
 def measure(servers: Mapping[str, Server]) -> dict[str, Any]:
-    """Seconds of saving it, milliseconds of each action, and the most memory that a server has held by then."""
+    """Seconds of saving the machine, milliseconds of each action, and each server's peak memory until then."""
     body = _machine()
     saved = {name: _saved(server, body) for name, server in servers.items()}
     found: dict[str, Any] = {"create": {name: {"seconds": round(seconds, 2)} for name, (_, seconds) in saved.items()}}
@@ -58,7 +57,7 @@ def _machine() -> bytes:
 
 
 def _saved(server: Server, body: bytes) -> tuple[str, float]:
-    """Id of the machine, which has a revision, and seconds until it was answered."""
+    """Id of the machine, which has a revision, and seconds until the answer."""
     start = time.perf_counter()
     id: str = json.loads(server.ask("/api/v1/machines", body))["id"]
     seconds = time.perf_counter() - start

@@ -1,8 +1,8 @@
-"""The plain service that a user would write: FastAPI, pydantic models in and out, numpy over the gears.
+"""Plain service as a user would write it: FastAPI, pydantic models in and out, numpy over the gears.
 
-It answers what the benchmark asks and no more (no bearing, no requirements but ratios and sizes, no number formats), so
-it does less than the product for the same reply. Texts and ratings come from two replies that the benchmark has asked
-the product for, so that nothing of the engine is imported: `python -m tools.benchmarks.plain PORT FOLDER`.
+It answers only the requests of the benchmark (no bearing, no requirements but ratios and sizes, no number formats), so
+it does less than the product for the same reply. Texts and ratings come from two replies of the product, so that
+nothing of the engine is imported: `python -m tools.benchmarks.plain PORT FOLDER`.
 """
 
 import json
@@ -22,7 +22,7 @@ from hpn.application import Application
 
 FloatArray = NDArray[np.float64]
 ROUNDING = 1 + 1e-12
-"""A limit that is met exactly passes in floating point (contract of the checks)."""
+"""Factor that lets a limit met exactly pass in floating point (contract of the checks)."""
 
 
 class PlainDuty(BaseModel):
@@ -35,7 +35,7 @@ class PlainDuty(BaseModel):
 
 
 class PlainCheck(BaseModel):
-    """One check of one gear."""
+    """Check of a gear."""
 
     code: str
     demand: float | None
@@ -45,7 +45,7 @@ class PlainCheck(BaseModel):
 
 
 class PlainReserve(BaseModel):
-    """How far each driver may grow."""
+    """Possible growth of each driver."""
 
     torque_factor: float | None
     speed_factor: float | None
@@ -54,7 +54,7 @@ class PlainReserve(BaseModel):
 
 
 class PlainCandidate(BaseModel):
-    """One gear and its verdict."""
+    """Gear with its verdict."""
 
     designation: str
     size: str
@@ -101,7 +101,7 @@ class PlainNotice(BaseModel):
 
 
 class PlainReply(BaseModel):
-    """The whole reply."""
+    """Whole reply."""
 
     engine_version: str
     catalogue_version: str
@@ -114,7 +114,7 @@ class PlainReply(BaseModel):
 
 
 class Cycle:
-    """The sums of a duty cycle, equations 17.2 and 17.4, and the RMS torque."""
+    """Sums of a duty cycle, equations 17.2 and 17.4, and the RMS torque."""
 
     def __init__(self, application: Application) -> None:
         phases, pause = application.duty_cycle.load_phases, application.duty_cycle.pause_s
@@ -129,7 +129,7 @@ class Cycle:
 
 
 class PlainGears:
-    """The catalogue as columns; what is not published is NaN."""
+    """Catalogue as columns; an unpublished figure is NaN."""
 
     def __init__(self, rows: list[dict[str, Any]], rated_speed_rpm: float) -> None:
         self.rows, self.rated_speed_rpm = rows, rated_speed_rpm
@@ -145,7 +145,7 @@ class PlainGears:
         return np.array([math.nan if row[name] is None else row[name] for row in self.rows], dtype=float)
 
     def allowed(self, application: Application) -> "PlainGears":
-        """Those that the application restricts the list to."""
+        """Gears of the application's ratios and sizes."""
         ratios, sizes = application.requirements.ratios, application.requirements.sizes
         rows = [
             row
@@ -156,7 +156,7 @@ class PlainGears:
 
 
 class Selector:
-    """The selection over a list of gears."""
+    """Selection from a list of gears."""
 
     def __init__(self, folder: Path) -> None:
         catalogue = json.loads((folder / "catalogue.json").read_text())
@@ -167,7 +167,7 @@ class Selector:
         self.notices = [PlainNotice(**notice) for notice in sample["notices"]]
 
     def reply(self, application: Application) -> PlainReply:
-        """The reply to one application."""
+        """Reply to an application."""
         cycle, gears = Cycle(application), self.gears.allowed(application)
         candidates = self._candidates(application, cycle, gears)
         best = candidates[0]
@@ -281,7 +281,7 @@ class Selector:
 
 
 def numbers(values: FloatArray) -> list[float | None]:
-    """Floats as JSON has them."""
+    """Floats for JSON: None for NaN and infinity."""
     return [value if math.isfinite(value) else None for value in values.tolist()]
 
 
@@ -297,7 +297,7 @@ def _order(candidate: PlainCandidate, gears: PlainGears, g: int) -> tuple[float,
 
 
 def link_of(application: Application) -> str:
-    """The application in the address bar."""
+    """Link of an application."""
     pairs: list[tuple[str, float]] = []
     for phase in application.duty_cycle.load_phases:
         pairs += [("T", phase.torque_Nm), ("n", phase.speed_rpm), ("t", phase.duration_s)]
@@ -309,7 +309,7 @@ def link_of(application: Application) -> str:
 
 
 def create_app(folder: Path) -> FastAPI:
-    """The service."""
+    """Plain service."""
     app, selector = FastAPI(), Selector(folder)
 
     @app.post("/api/v1/select", response_model=PlainReply)

@@ -1,4 +1,4 @@
-"""Replies over HTTP: how long one takes from request to last byte, with one connection and with sixteen at once."""
+"""Replies over HTTP: time from request to last byte, with one connection and with sixteen at once."""
 
 import asyncio
 import json
@@ -16,7 +16,7 @@ from tools.benchmarks.variants import Server
 
 CONNECTIONS = (1, 16)
 REQUESTS = {"/api/v1/select": 160, "/api/v1/selections": 64}
-"""In a turn of each variant; fewer where each is written to a disk."""
+"""Requests in a turn of each variant; fewer where each is written to a disk."""
 
 TURNS = 9
 
@@ -89,7 +89,8 @@ def _request(path: str, content: bytes) -> bytes:
 
 
 def prove_equal(servers: Mapping[str, Server]) -> None:
-    """Raise RuntimeError unless all servers come to the same figures and order: else their times say nothing."""
+    """Raise RuntimeError unless all servers return the same figures and order, without which their times say
+    nothing."""
     for restriction in CASES.values():
         answers = {
             name: json.loads(server.ask("/api/v1/select", select_body(7, restriction)))
@@ -103,7 +104,7 @@ def prove_equal(servers: Mapping[str, Server]) -> None:
 
 
 def differing(one: Any, other: Any, place: str) -> Iterator[str]:
-    """Places where two replies differ: figures by more than 1e-12 of themselves; sentences may."""
+    """Places where two replies differ: figures by more than 1e-12 of themselves; sentences may differ."""
     if isinstance(one, dict) and isinstance(other, dict):
         for name in (one.keys() & other.keys()) - {"reason"}:  # a version may have more fields than another
             yield from differing(one[name], other[name], f"{place}/{name}")

@@ -1,4 +1,4 @@
-"""Beginnings: a first start after the install, the commands, and what an installed environment takes on the disk."""
+"""Starts: the first start after the install, the commands, and the size of an installed environment on the disk."""
 
 import shutil
 import statistics
@@ -54,7 +54,7 @@ def first_starts(checkouts: Mapping[str, Checkout], folder: Path) -> dict[str, A
 
 
 def _installed_clone(checkout: Checkout, place: Path) -> Checkout:
-    """A clone with what is needed to run, and no more."""
+    """Clone with the run-time packages only."""
     subprocess.run(["git", "clone", "--quiet", checkout.folder, place], check=True)
     subprocess.run(["make", "--silent", "install"], cwd=place, env=clean_environment(), check=True, capture_output=True)
     return Checkout(checkout.name, place)

@@ -1,6 +1,6 @@
-"""Turns, in which the variants alternate, and what they come to: medians, and ratios taken turn by turn.
+"""Turns in which the variants alternate, and their figures: medians, and ratios taken turn by turn.
 
-The variants of one turn see the same machine, so what else runs on it cancels out of their ratio.
+The variants of one turn meet the same load of the machine, so it cancels out of their ratio.
 """
 
 import statistics
@@ -14,7 +14,7 @@ Measured = TypeVar("Measured")
 def in_turns(
     variants: Mapping[str, Callable[[int], Measured]], turns: int, *, warm_up: bool = True
 ) -> dict[str, list[Measured]]:
-    """Measurements of each variant in each turn, every other turn in reverse order; one turn before warms up."""
+    """Measurements of each variant in each turn, every other turn in reverse order, after one turn to warm up."""
     found: dict[str, list[Measured]] = {name: [] for name in variants}
     for turn in range(0 if warm_up else 1, turns + 1):
         names = list(variants)[:: 1 if turn % 2 else -1]
@@ -26,7 +26,7 @@ def in_turns(
 
 
 def ratios(values: Mapping[str, Sequence[float]]) -> dict[str, float]:
-    """Median of the ratios of the turns for each pair of variants, such as `here_over_plain`."""
+    """Median over the turns of the ratio of each pair of variants, such as `here_over_plain`."""
     return {
         f"{one}_over_{other}": round(
             statistics.median(a / b for a, b in zip(values[one], values[other], strict=True)), 3

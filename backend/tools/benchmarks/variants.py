@@ -18,18 +18,18 @@ START_SECONDS = 120
 
 @dataclass(frozen=True)
 class Checkout:
-    """An installed checkout; nothing of it is imported here."""
+    """Installed checkout; nothing of it is imported here."""
 
     name: str
     folder: Path
 
     @property
     def hpn(self) -> str:
-        """Its command."""
+        """Path of its command."""
         return str(self.folder / ".venv/bin/hpn")
 
     def commit(self) -> str:
-        """Commit that is measured; a plus where files differ from it."""
+        """Commit to measure, with a plus where files differ from it."""
         return self._git("rev-parse", "--short", "HEAD") + ("+" if self._git("status", "--porcelain") else "")
 
     def _git(self, *arguments: str) -> str:
@@ -40,31 +40,31 @@ class Checkout:
 
 @dataclass(frozen=True)
 class Server:
-    """A running server."""
+    """Running server."""
 
     pid: int
     port: int
 
     @property
     def address(self) -> str:
-        """Where it answers."""
+        """Address of the server."""
         return f"http://127.0.0.1:{self.port}"
 
     def cpu_seconds(self) -> float:
-        """Processor time that it has used so far, user and system."""
+        """Processor time used so far, user and system, in seconds."""
         fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def resident_MB(self) -> float:
-        """Memory that it holds now."""
+        """Present memory in MB."""
         return self._status("VmRSS")
 
     def peak_MB(self) -> float:
-        """Most memory that it has held."""
+        """Peak memory in MB."""
         return self._status("VmHWM")
 
     def ask(self, path: str, content: bytes | None = None, method: str = "") -> bytes:
-        """One answer on a connection of its own; raises RuntimeError where it is no success."""
+        """Answer on a connection of its own; raises RuntimeError for a status of 300 or above."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=120)
         connection.request(method or ("POST" if content else "GET"), path, content, JSON if content else {})
         response = connection.getresponse()
@@ -80,14 +80,14 @@ class Server:
 
 
 def clean_environment(**variables: str) -> dict[str, str]:
-    """Environment of this machine without settings of the product, and without what belongs to this make."""
+    """Environment of this machine without settings of the product and variables of this make."""
     own = ("HPN_", "MAKE", "MFLAGS", "PYTHON", "VIRTUAL_ENV", "BESIDE", "PORT", "HOST")
     return {name: value for name, value in os.environ.items() if not name.startswith(own)} | variables
 
 
 @contextmanager
 def product(checkout: Checkout, folder: Path) -> Iterator[Server]:
-    """`hpn serve` of a checkout with a database in `folder`, until the block ends; rates are off."""
+    """Run `hpn serve` of a checkout with a database in `folder`, until the block ends; rates are off."""
     rates = {f"HPN_{group}_RATE": "off" for group in ("CALCULATOR", "BATCH", "WRITING")}
     environment = clean_environment(HPN_DATABASE_URL=f"sqlite:///{folder}/{checkout.name}.sqlite3", **rates)
     with _running([checkout.hpn, "serve", "--port", "{port}"], folder, environment) as server:
@@ -96,7 +96,7 @@ def product(checkout: Checkout, folder: Path) -> Iterator[Server]:
 
 @contextmanager
 def plain_service(folder: Path) -> Iterator[Server]:
-    """The plain FastAPI service; `folder` holds what it reads."""
+    """Run the plain FastAPI service; `folder` holds its input."""
     command = [sys.executable, "-m", "tools.benchmarks.plain", "{port}", str(folder)]
     with _running(command, HERE, clean_environment()) as server:
         yield server
@@ -108,7 +108,7 @@ def _running(command: list[str], folder: Path, environment: Mapping[str, str]) -
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     words = [word.format(port=port) for word in command]
-    # Its log is written as in earnest, and not read here.
+    # Its log is written as usual, and not read here.
     process = subprocess.Popen(words, cwd=folder, env=environment, stdout=subprocess.DEVNULL)
     try:
         _await_start(port, process)
@@ -119,7 +119,7 @@ def _running(command: list[str], folder: Path, environment: Mapping[str, str]) -
 
 
 def _await_start(port: int, process: "subprocess.Popen[bytes]") -> None:
-    """Wait until something answers at the root, be it that there is no page."""
+    """Wait until the root answers, even if with 404."""
     deadline = time.monotonic() + START_SECONDS
     while time.monotonic() < deadline and process.poll() is None:
         connection = http.client.HTTPConnection("127.0.0.1", port, timeout=START_SECONDS)

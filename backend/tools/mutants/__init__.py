@@ -1,1 +1,1 @@
-"""Mutation testing of the modules that decide: each small change of them has to make a test fail."""
+"""Mutation testing of the modules that decide: each small change of them must make a test fail."""

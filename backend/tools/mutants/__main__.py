@@ -1,4 +1,4 @@
-"""`python -m tools.mutants [MODULE …]`: puts every mutant on trial, and lists those that no test finds."""
+"""`python -m tools.mutants [MODULE …]`: tries every mutant, and lists those that no test finds."""
 
 import argparse
 import os
@@ -24,7 +24,7 @@ LIBRARIES = (
     "pydantic_settings",
     "starlette.testclient",
 )
-"""Libraries of the modules, imported once for all forked processes; the modules and tests themselves are not."""
+"""Libraries of the modules, imported once for all forked processes; modules and tests are imported in each process."""
 
 PACKAGE = Path(__file__).parents[2] / "hpn"
 MODULES = {
@@ -38,10 +38,10 @@ MODULES = {
     "evaluation": "engine",
     "selection": "engine",
 }
-"""Modules and packages on trial, and their rooms."""
+"""Modules and packages to try, and their rooms."""
 
 BESIDE = {"selection": ("candidates", "allowed")}
-"""Modules that are tried together with another."""
+"""Modules tried together with another."""
 
 NEAREST = {
     "equations": ["tests/reference/test_edges.py", "tests/reference/test_equations.py"],
@@ -63,7 +63,7 @@ NEAREST = {
         *("tests/unit/test_motors.py", "tests/unit/test_readings.py"),
     ],
 }
-"""Tests of each module itself, which find most."""
+"""Own tests of each module, which find most mutants."""
 
 FURTHER = (
     [
@@ -83,11 +83,11 @@ FURTHER = (
         *("tests/web/test_openapi.py", "tests/web/test_openapi_bounds.py", "tests/web/test_openapi_truth.py"),
     ],
 )
-"""Further tests of a mutant that passes those, by cost."""
+"""Further tests of a mutant that passes its module's own, by cost."""
 
 
 def mutants_in(module: str) -> list[Mutant]:
-    """Every mutant of a module with those beside it, or of each file of a package."""
+    """Mutants of a module and of those beside it, or of each file of a package."""
     room = PACKAGE / MODULES[module]
     folder = room / module
     files = [room / f"{name}.py" for name in (module, *BESIDE.get(module, ()))]
@@ -97,7 +97,7 @@ def mutants_in(module: str) -> list[Mutant]:
 
 
 def main() -> int:
-    """Print each survivor that is not explained, and counts; 1 where there is one."""
+    """Print the unexplained survivors, and counts; returns 1 where there is a survivor."""
     parser = argparse.ArgumentParser(prog="python -m tools.mutants", description=__doc__)
     parser.add_argument("modules", nargs="*", metavar="MODULE", help=f"out of {', '.join(MODULES)}; all by default")
     parser.add_argument("--list", action="store_true", help="list the mutants, and try none")
@@ -106,7 +106,7 @@ def main() -> int:
     os.nice(19)
     for library in LIBRARIES:
         import_module(library)
-    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # none of the tests needs one, and each takes its time
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # no test needs one, and each takes its time
     found = 0
     for module in given.modules or MODULES:
         mutants = [mutant for mutant in mutants_in(module) if given.only in mutant.name]
@@ -118,7 +118,7 @@ def main() -> int:
 
 
 def _report(module: str, mutants: list[Mutant]) -> int:
-    """Try the mutants, but not those again and again of which it is known that no test finds them."""
+    """Try the mutants and print the survivors; those that are explained are tried only with the module's own tests."""
     survivors = _survivors(mutants, NEAREST[module])
     explained = [mutant for mutant in survivors if mutant.name in EXPLAINED]
     survivors = [mutant for mutant in survivors if mutant not in explained]

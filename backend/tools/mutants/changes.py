@@ -1,4 +1,4 @@
-"""The changes: every mutant of a module, as the text of the module with one expression replaced."""
+"""Mutants of a module: its text with one expression replaced."""
 
 import ast
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ FUNCTIONS = {
     **{"multiply": "divide", "divide": "multiply", "add": "subtract", "round": "int"},
 }
 TEXTS = ("N_", "Meta")
-"""Calls that hold texts for people; the tests of texts and translations keep them."""
+"""Calls with texts for people; the tests of texts and translations guard them."""
 
 REQUIRED = {
     "Check": (
@@ -40,12 +40,12 @@ REQUIRED = {
         *("remedy", "demand", "limit", "relation"),
     )
 }
-"""Arguments without which the module is not even imported."""
+"""Arguments that the module needs to be imported at all."""
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A module's text with one change; `name` tells it from every other, whatever stands in other lines."""
+    """Module's text with one change; `name` identifies it independently of other lines."""
 
     name: str
     path: Path
@@ -54,7 +54,7 @@ class Mutant:
 
 
 def mutants_of(module: str, path: Path) -> Iterator[Mutant]:
-    """Every mutant of a file of a module, in the order of its text."""
+    """Mutants of a file of a module, in the order of its text."""
     source = path.read_text(encoding="utf-8")
     lines = source.splitlines(keepends=True)
     starts = [0]
@@ -66,7 +66,7 @@ def mutants_of(module: str, path: Path) -> Iterator[Mutant]:
         begin = starts[node.lineno - 1] + node.col_offset
         end = starts[(node.end_lineno or node.lineno) - 1] + (node.end_col_offset or 0)
         old = content[begin:end].decode()
-        if replacement.startswith(DROP):  # an argument goes with the comma behind it
+        if replacement.startswith(DROP):  # an argument goes with the comma after it
             rest = content[end:].decode()
             end += len((rest[: rest.index(",") + 1] if "," in rest[:2] else "").encode())
             replacement = ""
@@ -86,7 +86,7 @@ def _changes(tree: ast.Module) -> Iterator[Change]:
 
 
 def _walk(node: ast.AST, scope: str) -> Iterator[Change]:
-    """Changes of a node and what is in it; neither annotations, imports, docstrings nor texts are changed."""
+    """Changes of a node and its parts; annotations, imports, docstrings and texts stay."""
     if isinstance(node, ast.Import | ast.ImportFrom | ast.JoinedStr):
         return
     if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
@@ -109,7 +109,7 @@ def _walk(node: ast.AST, scope: str) -> Iterator[Change]:
 
 
 def _code(node: ast.Call) -> str:
-    """Code of the check that a call declares, by itself or through a function; blank for any other call."""
+    """Code of the check that a call declares, itself or through a function; blank for any other call."""
     given = (keyword.value for keyword in node.keywords if keyword.arg == "code")
     return next(
         (value.value for value in given if isinstance(value, ast.Constant) and isinstance(value.value, str)), ""

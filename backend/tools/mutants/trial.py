@@ -1,4 +1,4 @@
-"""One mutant on trial: a forked process that imports it in place of the module, and runs tests until one fails."""
+"""Trial of a mutant: a forked process imports it in place of the module, and runs tests until one fails."""
 
 import os
 import resource
@@ -13,21 +13,21 @@ import hypothesis
 import pytest
 
 CPU_SECONDS = 120
-"""Processor time after which a mutant counts as hanging, which a test would notice."""
+"""Processor time in seconds after which a mutant counts as hanging, which a test would notice."""
 
 
 class _FewExamples:
-    """Plugin: as few examples of the property tests as find what is plainly wrong."""
+    """Plugin: few examples of the property tests, enough to find plain errors."""
 
     def pytest_collection(self) -> None:
-        """After the profile of `tests/conftest.py`, before test modules are imported."""
+        """Load the profile after that of `tests/conftest.py`, before test modules are imported."""
         settings = hypothesis.settings
         settings.register_profile("mutants", parent=settings.get_profile("hpn"), max_examples=10)
         settings.load_profile("mutants")
 
 
 def survives(path: Path, source: str, tests: list[str]) -> bool:
-    """True where every one of the tests passes with the module at `path` made of `source`."""
+    """True where all tests pass with the module at `path` made of `source`."""
     child = os.fork()
     if child == 0:
         code = 1
@@ -59,6 +59,6 @@ def _tried(path: Path, source: str, tests: list[str]) -> int:
 
 
 def timed(path: Path, source: str, tests: list[str]) -> tuple[bool, float]:
-    """The same, and how long it took."""
+    """Outcome of `survives`, and its duration in seconds."""
     start = time.monotonic()
     return survives(path, source, tests), time.monotonic() - start

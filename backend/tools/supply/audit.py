@@ -1,7 +1,7 @@
-"""`make audit`: the locks against the vulnerabilities that PyPI and npm know.
+"""`make audit`: checks the locks against the known vulnerabilities of PyPI and npm.
 
-Ends with 0 where none is known, 1 where one is, and 3 where a package could not be looked up: what nobody was asked
-about is not called sound. pip-audit alone ends with 0 where an index without that data answers 404.
+Ends with 0 where none is known, 1 where one is, and 3 where a package could not be looked up: such a package is not
+called sound. pip-audit alone ends with 0 where an index without that data answers 404.
 """
 
 import json
@@ -28,7 +28,7 @@ class Audit(NamedTuple):
 
 
 def of_python(packages: Sequence[Package]) -> Audit:
-    """Have pip-audit ask for every package, those for other versions of Python and other systems included."""
+    """Findings of pip-audit on all packages, those for other versions of Python and other systems included."""
     flags = ["--disable-pip", "--require-hashes", "--progress-spinner=off", "--format=json"]
     unasked, found = [], []
     for some in _one_version_of_each(packages):
@@ -44,7 +44,7 @@ def of_python(packages: Sequence[Package]) -> Audit:
 
 
 def _one_version_of_each(packages: Sequence[Package]) -> Iterator[Sequence[Package]]:
-    """Split packages so that no name stands twice, which pip-audit refuses."""
+    """Split packages so that no name occurs twice, which pip-audit refuses."""
     while packages:
         chosen = {package.name: package for package in packages}
         yield list(chosen.values())
@@ -57,7 +57,7 @@ def _flaw(package: dict[str, Any], flaw: dict[str, Any]) -> str:
 
 
 def of_page() -> Audit:
-    """Have npm ask for every package of the page's lock."""
+    """Findings of npm on all packages of the page's lock."""
     packages = locks.page()
     said = _json(["npm", "audit", "--json"], locks.PAGE)
     if "vulnerabilities" not in said:
@@ -70,7 +70,7 @@ def of_page() -> Audit:
 
 
 def _json(command: Sequence[str], folder: Path = locks.ROOT) -> dict[str, Any]:
-    """Output of a tool, or under `error` the last line of its complaint."""
+    """JSON output of a tool, or its last line of error text under `error`."""
     run = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     try:
         said: dict[str, Any] = json.loads(run.stdout)
@@ -80,7 +80,7 @@ def _json(command: Sequence[str], folder: Path = locks.ROOT) -> dict[str, Any]:
 
 
 def report(answers: dict[str, Audit]) -> int:
-    """Say what was learnt, and give the exit code."""
+    """Print the findings; returns the exit code."""
     for name, (packages, unasked, found) in answers.items():
         print(f"{name}: {packages} packages, {len(unasked)} could not be looked up, {len(found)} known vulnerabilities")
         for line in (*unasked[:1], *found):

@@ -1,4 +1,4 @@
-"""`make licences`: the licences of everything in the locks, written to docs/licences.md."""
+"""`make licences`: writes the licences of all packages in the locks to docs/licences.md."""
 
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, metadata
@@ -50,7 +50,7 @@ READ = {
     "uvloop": "MIT OR Apache-2.0",
     "zict": "BSD-3-Clause",
 }
-"""Read in the package's own licence file: its metadata says it in no clear words, or it is not installed everywhere."""
+"""Licences read in the packages' own licence files: their metadata is unclear, or they are not installed everywhere."""
 
 UNKNOWN = "unknown"
 
@@ -92,7 +92,7 @@ psycopg-binary bring an SBOM of what was compiled into them, in `*.dist-info/sbo
 
 
 def of_python(name: str) -> str:
-    """Licence of a package for Python: as read by hand, else by the field meant for it, else by words."""
+    """Licence of a Python package: as read by hand, else from the field meant for it, else from words."""
     if name in READ:
         return READ[name]
     try:
@@ -110,7 +110,7 @@ def of_python(name: str) -> str:
 
 
 def of_page(development: bool) -> dict[Package, str]:
-    """Packages of the page with their licences, by the lock."""
+    """Packages of the page with their licences, from the lock."""
     found = {}
     for folder, package in locks.page().items():
         if bool(package.get("dev")) is development:
@@ -120,7 +120,7 @@ def of_page(development: bool) -> dict[Package, str]:
 
 
 def sections() -> dict[str, dict[Package, str]]:
-    """All packages with their licences, by what they are for."""
+    """All packages with their licences, by purpose."""
     run = {Package(*package[:2]) for package in locks.python(locks.RUN_LOCK)}
     every = {Package(*package[:2]) for lock in locks.DEVELOPMENT_LOCKS for package in locks.python(lock)}
     return {
@@ -132,7 +132,7 @@ def sections() -> dict[str, dict[Package, str]]:
 
 
 def heeded(found: dict[str, dict[Package, str]]) -> Iterable[tuple[str, ...]]:
-    """Packages whose licence asks for more than a notice, and those whose licence is not known."""
+    """Packages whose licence requires more than a notice, and those whose licence is unknown."""
     for packages in found.values():
         for package, licence in sorted(packages.items()):
             reasons = [reason for mark, reason in TO_HEED.items() if mark in licence]
@@ -141,13 +141,13 @@ def heeded(found: dict[str, dict[Package, str]]) -> Iterable[tuple[str, ...]]:
 
 
 def table(title: str, columns: str, rows: Iterable[tuple[str, ...]]) -> str:
-    """A section of the file with its table."""
+    """Section of the file with its table."""
     ruler = "---".join("|" * columns.count("|"))
     return "\n".join([f"## {title}", columns, ruler, *(f"| {' | '.join(row)} |" for row in rows)]) + "\n"
 
 
 def text() -> str:
-    """The whole file."""
+    """Whole file."""
     found = sections()
     service, page, *development = [
         table(title, "| package | version | licence |", ((*package[:2], of[package]) for package in sorted(of)))

@@ -13,7 +13,7 @@ ENTRY = re.compile(r"^([\w.-]+)==(\S+)[^\\]*\\\n((?: +--hash=.*\n)+)", re.M)
 
 
 class Package(NamedTuple):
-    """A package of a lock; of one name there may be two, for older and newer versions of Python."""
+    """Package of a lock; a name may occur twice, for older and newer versions of Python."""
 
     name: str
     version: str
@@ -21,7 +21,7 @@ class Package(NamedTuple):
 
 
 def python(lock: Path) -> list[Package]:
-    """Packages of a requirements lock, on whatever machine they are for."""
+    """Packages of a requirements lock, for all machines."""
     text = lock.read_text()
     packages = [Package(*entry) for entry in ENTRY.findall(text)]
     assert len(packages) == len(re.findall(r"^\w", text, re.M)), (
@@ -31,6 +31,6 @@ def python(lock: Path) -> list[Package]:
 
 
 def page() -> dict[str, dict[str, Any]]:
-    """Packages of the page's lock, by their folder."""
+    """Packages of the page's lock, by their folders."""
     packages: dict[str, dict[str, Any]] = json.loads((PAGE / "package-lock.json").read_text())["packages"]
     return {folder: package for folder, package in packages.items() if folder}

@@ -1,6 +1,6 @@
-"""`make sbom`: what an installed service consists of, as CycloneDX.
+"""`make sbom`: packages of an installed service, as CycloneDX.
 
-It says what the locks say, with every file's hash and no address, so that the same locks give the same bytes.
+It has the contents of the locks, with every file's hash and no address, so that the same locks give the same bytes.
 """
 
 import json
@@ -28,7 +28,7 @@ ALGORITHMS = {"sha256": HashAlgorithm.SHA_256, "sha512": HashAlgorithm.SHA_512}
 
 
 def component(of: str, package: Package, licence: str, hashes: Iterable[tuple[str, str]]) -> Component:
-    """A package, with the hashes of the files that it may be installed from."""
+    """Package with the hashes of its installation files."""
     address = PackageURL(of, name=package.name, version=package.version)
     files = [HashType(alg=ALGORITHMS[algorithm], content=digest) for algorithm, digest in hashes]
     return Component(
@@ -53,7 +53,7 @@ def of_python() -> list[Component]:
 
 
 def of_page() -> list[Component]:
-    """Packages that browsers get."""
+    """Packages sent to browsers."""
     found = licences.of_page(development=False)
     integrity = {
         folder.rpartition("node_modules/")[2]: package["integrity"] for folder, package in locks.page().items()
@@ -66,7 +66,7 @@ def of_page() -> list[Component]:
 
 
 def bill() -> Bom:
-    """The bill of materials. The locks do not say which package needs which: it knows what the project itself names."""
+    """Bill of materials. The locks do not tell dependencies of packages: it has those of the project itself."""
     project: dict[str, Any] = tomllib.loads((locks.ROOT / "pyproject.toml").read_text())["project"]
     root = Component(
         type=ComponentType.APPLICATION,
@@ -87,7 +87,7 @@ def bill() -> Bom:
 
 
 def text() -> str:
-    """The file, without the time at which it was written."""
+    """Text of the file, without the time of writing."""
     document = json.loads(JsonV1Dot6(bill()).output_as_string())
     del document["metadata"]["timestamp"]
     return json.dumps(document, indent=2) + "\n"

@@ -1,9 +1,9 @@
-"""Dependence of utilisations on the inputs, where several checks share one, and the conditions under which it holds.
+"""Dependence of utilisations on inputs that several checks share, and the conditions under which it holds.
 
 A share Σ w d / (Σ w + c) rises or falls with each weight w, whatever the others are; every other function here is
 monotone in each input, or convex in it, and so is largest at one of its ends. Along a motion with fixed times and
 speeds the torque at the gear is a convex function of mass, inertia, friction and external load, one at a time, at each
-instant: losses bend it at 0, and only upwards. So its peak and its powers' integrals are convex as well.
+instant: losses bend it at 0, and only upwards. So its peak and the integrals of its powers are convex as well.
 """
 
 from collections.abc import Mapping
@@ -58,22 +58,22 @@ BEARING: Mapping[str, Dependence] = {
 
 
 def holds_load(case: Case) -> BoolArray:
-    """True where T_k rises with the load's inertia: the brake holds the load, or an inertia is not known."""
+    """True where T_k rises with the load's inertia: the brake holds the load, or an inertia is unknown."""
     stops = case.figures.stops
     if case.duty.brakes is None:
         return np.ones((1, 1), np.bool_)
     unknown = np.isnan(stops.brake.load_inertia_kgm2 + stops.brake.motor_at_output_kgm2)
-    held: BoolArray = stop.is_held(brake=stops.brake, load=stops.load) | unknown | np.isnan(stops.brake.torque_Nm)
-    return held
+    is_held: BoolArray = stop.is_held(brake=stops.brake, load=stops.load) | unknown | np.isnan(stops.brake.torque_Nm)
+    return is_held
 
 
 # --- Output bearing ---------------------------------------------------------------------------------------------------
 
 
 def bearing_damages(case: Case) -> FloatArray:
-    """n (f_w P)³ of every phase on the bearing of every size, shape (N, sizes, phases).
+    """Damage n (f_w P)³ of every phase on the bearing of every size, shape (N, sizes, phases).
 
-    P is its lower bound where the shaft's centre is not known.
+    P is its lower bound where the shaft's centre is unknown.
     """
     gears = case.figures.gears
     P = phase_loads(case.duty, gears)
@@ -84,16 +84,18 @@ def bearing_damages(case: Case) -> FloatArray:
 
 
 def has_rising_curves(case: Case) -> BoolArray:
-    """True where the load on a bearing rises with each of its parts, which the printed curve of a size may not do."""
-    if not (case.asked.bearing_model == "digitised").any():
+    """True where the load on a bearing rises with each of its parts, which a size's printed curve does not
+    guarantee.
+    """
+    if not (case.inputs.bearing_model == "digitised").any():
         return np.ones((1, 1), np.bool_)
-    rising: BoolArray = (case.asked.bearing_model != "digitised") | _rising_curves(case.figures.gears)
+    rising: BoolArray = (case.inputs.bearing_model != "digitised") | _rising_curves(case.figures.gears)
     return rising
 
 
 @lru_cache(maxsize=256)
 def _rising_curves(gears: GearList) -> BoolArray:
-    """True for gears whose curve never turns back to either axis, or that have none, shape (G,)."""
+    """True for gears without a curve, or with a curve that never turns back to either axis, shape (G,)."""
     steps = [(np.diff(curve.radial_N), np.diff(curve.axial_N)) if curve else None for curve in gears.curves]
     return np.array([step is None or bool((step[0] <= 0).all() and (step[1] >= 0).all()) for step in steps])
 
@@ -108,19 +110,21 @@ def square_torques(case: Case) -> FloatArray:
 
 
 def follows_torque(case: Case) -> BoolArray:
-    """True where the torque at the motor rises with the gear's: it has no part of the motor's own inertia."""
-    stated = ~np.isnan(case.asked["requirements.efficiency"])
+    """True where the motor's torque rises with the gear's: no part of it comes from the motor's own inertia."""
+    stated = ~np.isnan(case.inputs["requirements.efficiency"])
     turns = np.zeros(stated.shape, np.bool_)
     for place in case.duty.courses:
-        turns[place] = ~np.isnan(case.asked["requirements.motor.inertia_kgm2"][place])
+        turns[place] = ~np.isnan(case.inputs["requirements.motor.inertia_kgm2"][place])
     return ~turns & (stated | _rising_torques(case.figures.gears, case.figures.catalogue))
 
 
 def follows_rms(case: Case) -> BoolArray:
-    """The same of the RMS, which along a motion has no part of the gear's own torque or curve either."""
-    moved = np.zeros((len(case.asked.rank_by), 1), np.bool_)
+    """The same for the RMS, which along a motion must also be free of the gear's no-load torque and efficiency
+    curve.
+    """
+    moved = np.zeros((len(case.inputs.rank_by), 1), np.bool_)
     moved[list(case.duty.courses)] = True
-    stated, gears = ~np.isnan(case.asked["requirements.efficiency"]), case.figures.gears
+    stated, gears = ~np.isnan(case.inputs["requirements.efficiency"]), case.figures.gears
     curved = np.array([gear.designation in case.figures.catalogue.efficiency for gear in gears.rows])
     own = (gears.columns.no_load_torque_Nm > 0) | (curved & ~stated)
     return follows_torque(case) & ~(moved & own)
@@ -128,7 +132,7 @@ def follows_rms(case: Case) -> BoolArray:
 
 @lru_cache(maxsize=256)
 def _rising_torques(gears: GearList, catalogue: Catalogue) -> BoolArray:
-    """True for gears whose T / η rises with T along their curve of a supplement, or that have none, shape (G,)."""
+    """True for gears without an efficiency curve, or whose T / η rises with T along it, shape (G,)."""
 
     def rises(designation: str) -> bool:
         if designation not in catalogue.efficiency:

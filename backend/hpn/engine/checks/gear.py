@@ -10,8 +10,8 @@ from hpn.words.wording import N_
 
 
 def _share_of_stops(case: Case) -> FloatArray:
-    """Expected over allowed stops; infinite where not one is allowed, even for an expected number of 0."""
-    expected, allowed = case.asked["emergency_stop.count"], case.figures.momentary_peak_count
+    """Ratio of expected to allowed stops; infinite where none is allowed, even for an expected number of 0."""
+    expected, allowed = case.inputs["emergency_stop.count"], case.figures.momentary_peak_count
     return np.where((allowed == 0) & ~np.isnan(expected), np.inf, expected / allowed)
 
 
@@ -93,7 +93,7 @@ GEAR: tuple[Check, ...] = (
         consequence=N_("A single event can deform or break teeth, or make the input coupling slip."),
         basis=N_("Limit T_M of the rating table. Such a torque must not occur in the normal cycle."),
         remedy=N_("Limit the emergency-stop torque, or choose a gear with a larger momentary peak torque."),
-        asked="emergency_stop.torque_Nm",
+        trigger="emergency_stop.torque_Nm",
         instead="emergency_stop.brake.torque_Nm",
         demand=lambda c: c.figures.stop_torque_Nm,
         limit=lambda c: c.gears.momentary_peak_torque_Nm,
@@ -120,8 +120,8 @@ GEAR: tuple[Check, ...] = (
             "Make emergency stops rarer or gentler: the permitted number grows tenfold when T_k falls by two thirds"
             " of T_R."
         ),
-        asked="emergency_stop.count",
-        demand=lambda c: c.asked["emergency_stop.count"],
+        trigger="emergency_stop.count",
+        demand=lambda c: c.inputs["emergency_stop.count"],
         limit=lambda c: c.figures.momentary_peak_count,
         share=_share_of_stops,
         limited_by="repeated_peak_torque_Nm",
@@ -196,7 +196,7 @@ GEAR: tuple[Check, ...] = (
             "speed 3000 rpm (glossary). The hours include the pause."
         ),
         remedy=N_("Lower the torque (it counts to the power 10/3), the speed or the duty, or choose a larger gear."),
-        asked="requirements.life_h",
+        trigger="requirements.life_h",
         demand=lambda c: c.figures.life_L10_h,
         limited_by="rated_torque_Nm",
         relation="L_10 ≥ L_10,req",

@@ -1,9 +1,37 @@
-"""Checks of the motor, against the limits that the user states: speeds, torques and the inertia ratio."""
+"""Checks of the motor against the user's limits: speeds, torques and the inertia ratio."""
 
-from hpn.engine.check import Check
+import numpy as np
+
+from hpn.engine.check import Case, Check
 from hpn.engine.checks.dependence import AVERAGE_SPEED, follows_rms, follows_torque, square_torques
+from hpn.engine.input_arrays import CURVE
 from hpn.engine.motor_torques import inertia_ratio
+from hpn.physics.equations import FloatArray
 from hpn.words.wording import N_
+
+
+def _speed_limit(case: Case) -> FloatArray:
+    """Maximum speed of the motor, or the last speed of its curve if smaller."""
+    return np.fmin(case.inputs["requirements.motor.maximum_speed_rpm"], case.inputs[CURVE])
+
+
+def _peak(case: Case) -> FloatArray:
+    """Largest torque at the motor; with a curve the torque nearest to it."""
+    figures, has_curve = case.figures, ~np.isnan(case.inputs[CURVE])
+    return np.where(has_curve, figures.by_curve.demand_Nm, figures.motor_peak_torque_Nm)
+
+
+def _peak_limit(case: Case) -> FloatArray:
+    """Peak torque of the motor; with a curve its value where the torque is nearest to it."""
+    stated = case.inputs["requirements.motor.peak_torque_Nm"]
+    return np.where(np.isnan(case.inputs[CURVE]), stated, case.figures.by_curve.peak_Nm)
+
+
+def _continuous_limit(case: Case) -> FloatArray:
+    """Rated torque of the motor; with a curve the smaller of the limits by losses and by the makers' rule."""
+    stated = case.inputs["requirements.motor.rated_torque_Nm"]
+    return np.where(np.isnan(case.inputs[CURVE]), stated, case.figures.by_curve.continuous_Nm)
+
 
 MOTOR: tuple[Check, ...] = (
     Check(
@@ -18,9 +46,11 @@ MOTOR: tuple[Check, ...] = (
         source=N_("your input"),
         tests=N_("The largest output speed times the ratio stays within the motor’s maximum speed."),
         consequence=N_("The motor can’t reach the speed that the cycle requires."),
-        basis=N_("Limit as given."),
+        basis=N_("Limit as given, or the last speed of the motor’s torque curve where that is smaller."),
         remedy=N_("Choose a smaller ratio, a faster motor, or a lower top speed."),
-        asked="requirements.motor.maximum_speed_rpm",
+        trigger="requirements.motor.maximum_speed_rpm",
+        instead=CURVE,
+        limit=_speed_limit,
         demand=lambda c: c.figures.maximum_input_speed_rpm,
         relation="n_in,max ≤ n_mot",
         moves={"speed": 1.0},
@@ -45,11 +75,16 @@ MOTOR: tuple[Check, ...] = (
             "T_max / (i · η), with the efficiency given or that of a supplement; without one loss-free, a lower "
             "bound. With a motion and the motor’s inertia J_m it is the largest T / (i · η) + J_m · i · α, or T · η / "
             "i where the load drives. The gear’s inertia is added to J_m, and its no-load torque in any case, where a "
-            "supplement gives them; else they are left out."
+            "supplement gives them; else they are left out. Along a torque curve of the motor demand and limit are "
+            "those of the point nearest to it: of a motion along its course, of typed phases each phase’s peak against "
+            "the least limit up to its peak speed. Without a motion or J_m the rotor is left out."
         ),
         remedy=N_("Choose a larger ratio or a stronger motor, or accelerate more gently."),
-        asked="requirements.motor.peak_torque_Nm",
-        demand=lambda c: c.figures.motor_peak_torque_Nm,
+        trigger="requirements.motor.peak_torque_Nm",
+        instead=CURVE,
+        limit=_peak_limit,
+        sampled_beside=CURVE,
+        demand=_peak,
         relation="T_max / (i · η) ≤ T_mot",
         moves={"torque": 1.0},
         accepted=N_("the motor’s peak torque rises to {value}"),
@@ -57,6 +92,7 @@ MOTOR: tuple[Check, ...] = (
             "peak_torque_Nm": "rising",
             "requirements.efficiency": "falling",
             "requirements.motor.peak_torque_Nm": "falling",
+            "requirements.motor.inertia_kgm2": "ends",
             "motion": "ends",
         },
         proven=follows_torque,
@@ -79,10 +115,15 @@ MOTOR: tuple[Check, ...] = (
             "RMS of T / (i · η), with the efficiency given or that of a supplement; without one loss-free, a lower "
             "bound. With a motion and the motor’s inertia J_m it is the RMS of T / (i · η) + J_m · i · α, or T · η / "
             "i where the load drives. The gear’s inertia is added to J_m, and its no-load torque in any case, where a "
-            "supplement gives them; else they are left out."
+            "supplement gives them; else they are left out. With a torque curve M_c(n) of the motor the limit is the "
+            "smaller of two: the root of the mean of M_c(n)² over the cycle, with which the motor’s losses balance, "
+            "the pause at speed 0, and the makers’ rule, M_c at the mean speed."
         ),
         remedy=N_("Choose a larger ratio or a stronger motor, or lengthen the pause."),
-        asked="requirements.motor.rated_torque_Nm",
+        trigger="requirements.motor.rated_torque_Nm",
+        instead=CURVE,
+        limit=_continuous_limit,
+        sampled_beside=CURVE,
         demand=lambda c: c.figures.motor_rated_torque_Nm,
         relation="T_rms / (i · η) ≤ T_mot,N",
         moves={"torque": 1.0},
@@ -93,6 +134,7 @@ MOTOR: tuple[Check, ...] = (
             "duty_cycle.pause_s": "falling",
             "requirements.efficiency": "falling",
             "requirements.motor.rated_torque_Nm": "falling",
+            "requirements.motor.inertia_kgm2": "ends",
             "motion": "ends",
         },
         weighted=square_torques,
@@ -112,7 +154,8 @@ MOTOR: tuple[Check, ...] = (
         consequence=N_("The motor overheats: its rated torque is available only up to its rated speed."),
         basis=N_("Limit as given."),
         remedy=N_("Choose a smaller ratio or a faster motor, or lengthen the pause."),
-        asked="requirements.motor.rated_speed_rpm",
+        trigger="requirements.motor.rated_speed_rpm",
+        unless=CURVE,
         demand=lambda c: c.figures.average_input_speed_rpm,
         relation="n_in,av ≤ n_mot,N",
         moves={"speed": 1.0},
@@ -138,8 +181,8 @@ INERTIA_RATIO = Check(
         "is included where a supplement gives it."
     ),
     remedy=N_("Choose a larger ratio, a motor with more inertia, or a lighter load."),
-    asked="requirements.motor.inertia_ratio",
-    demand=lambda c: inertia_ratio(c.duty, c.gears, c.asked["requirements.motor.inertia_kgm2"]),
+    trigger="requirements.motor.inertia_ratio",
+    demand=lambda c: inertia_ratio(c.duty, c.gears, c.inputs["requirements.motor.inertia_kgm2"]),
     relation="(J_L / i² + J_g) / J_m ≤ r_J",
     accepted=N_("the permitted inertia ratio rises to {value}"),
     over={
@@ -151,4 +194,4 @@ INERTIA_RATIO = Check(
 )
 
 OF_MOTOR = (*MOTOR, INERTIA_RATIO)
-"""All checks of the motor: of its loads, and of its inertia, which is a property and the last of all checks."""
+"""All checks of the motor: the load checks, and the inertia ratio, a property check and the last of all."""

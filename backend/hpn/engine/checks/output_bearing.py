@@ -11,8 +11,8 @@ BEARING_LIMITS = N_("F_R,dyn(max) and F_A,dyn(max), rating tables 10.1 to 12.2")
 
 
 def _known_or_failing(known: FloatArray, at_least: FloatArray, case: Case, limit: FloatArray) -> FloatArray:
-    """A load where it is known, or its lower bound where that fails already; NaN where neither says anything."""
-    fails = at_least > limit * case.asked["requirements.utilisation"] * (1 + ROUNDING)
+    """A load where it is known, else its lower bound if that already fails, else NaN."""
+    fails = at_least > limit * case.inputs["requirements.utilisation"] * (1 + ROUNDING)
     return np.where(np.isnan(known) & fails, at_least, known)
 
 
@@ -35,7 +35,7 @@ OUTPUT_BEARING: tuple[Check, ...] = (
             "f_w = 1 is our reading. Slower running never enlarges this envelope."
         ),
         remedy=N_("Support the load outside the gear, move it, or choose a larger size."),
-        asked="output_load.load_coefficient",
+        trigger="output_load.load_coefficient",
         demand=lambda c: _known_or_failing(
             c.figures.bearing_load, c.figures.bearing_loads_at_least[0], c, np.ones((1, 1))
         ),
@@ -66,7 +66,7 @@ OUTPUT_BEARING: tuple[Check, ...] = (
             "5 is taken from the manufacturer’s other handbooks, not printed in this one. The hours include the pause."
         ),
         remedy=N_("Lower load, speed or required life, choose f_w with more care, or choose a larger size."),
-        asked="output_load.load_coefficient",
+        trigger="output_load.load_coefficient",
         demand=lambda c: _known_or_failing(
             c.figures.bearing_mean_load, c.figures.bearing_loads_at_least[1], c, c.figures.bearing_life_factor
         ),

@@ -1,4 +1,4 @@
-"""Checks of properties, against what the user requires: temperature, backlash, stiffness, weight and length."""
+"""Checks of properties against the user's requirements: temperature, stiffness, accuracy, weight and length."""
 
 from typing import Any
 
@@ -16,8 +16,8 @@ def _middle_and_half(case: Case) -> tuple[FloatArray, FloatArray]:
 
 
 def _nearer_end(case: Case) -> FloatArray:
-    """The end of the permitted range of temperature on whose side of the middle the asked one lies."""
-    ambient, gears = case.asked["requirements.ambient_temperature_degC"], case.gears
+    """The end of the permitted temperature range on the same side of the middle as the asked temperature."""
+    ambient, gears = case.inputs["requirements.ambient_temperature_degC"], case.gears
     middle, _ = _middle_and_half(case)
     end = np.where(ambient >= middle, gears.ambient_temperature_maximum_degC, gears.ambient_temperature_minimum_degC)
     return np.where(np.isnan(middle), np.nan, end)
@@ -25,7 +25,7 @@ def _nearer_end(case: Case) -> FloatArray:
 
 def _distance_from_middle(case: Case) -> FloatArray:
     middle, half = _middle_and_half(case)
-    distance: FloatArray = np.abs(case.asked["requirements.ambient_temperature_degC"] - middle) / half
+    distance: FloatArray = np.abs(case.inputs["requirements.ambient_temperature_degC"] - middle) / half
     return distance
 
 
@@ -33,24 +33,24 @@ _MIDDLE = "(({amb_min}+{amb_max})/2)"
 
 
 def _permitted_error(case: Case) -> FloatArray:
-    """Permitted position error in arcmin: as it is given, else from the length at its radius."""
-    angle, length = case.asked["requirements.position_error_arcmin"], case.asked["requirements.position_error_mm"]
-    by_length = length / case.asked["requirements.position_radius_mm"] * ARCMIN_PER_RAD
+    """Permitted position error in arcmin: as given, else from the length at its radius."""
+    angle, length = case.inputs["requirements.position_error_arcmin"], case.inputs["requirements.position_error_mm"]
+    by_length = length / case.inputs["requirements.position_radius_mm"] * ARCMIN_PER_RAD
     return np.where(np.isnan(angle), by_length, angle)
 
 
 def _of_figure(figure: str, kind: Kind, **texts: Any) -> Check:
     """Check of a published figure against the requirement of the same name; `texts` are further fields of `Check`."""
-    asked = f"requirements.{figure}"
+    trigger = f"requirements.{figure}"
     return Check(
         **texts,
         kind=kind,
         group="property",
         limit_name=N_("your limit"),
-        asked=asked,
+        trigger=trigger,
         demand=lambda case: getattr(case.gears, figure),
         limited_by=figure,
-        over={asked: "rising" if kind == "minimum" else "falling"},
+        over={trigger: "rising" if kind == "minimum" else "falling"},
     )
 
 
@@ -71,8 +71,8 @@ PROPERTIES: tuple[Check, ...] = (
             "range reaches down to −10 °C, the gear’s does not."
         ),
         remedy=N_("Heat, cool or shield the gear, or ask the manufacturer for another lubricant."),
-        asked="requirements.ambient_temperature_degC",
-        demand=lambda c: c.asked["requirements.ambient_temperature_degC"],
+        trigger="requirements.ambient_temperature_degC",
+        demand=lambda c: c.inputs["requirements.ambient_temperature_degC"],
         limit=_nearer_end,
         share=_distance_from_middle,
         limited_by="ambient_temperature_maximum_degC",
@@ -125,7 +125,7 @@ PROPERTIES: tuple[Check, ...] = (
             "gear’s own inertia lower. K_3 holds above 15 % of the rated torque (glossary)."
         ),
         remedy=N_("Choose a larger size, or a load with less inertia."),
-        asked="requirements.natural_frequency_Hz",
+        trigger="requirements.natural_frequency_Hz",
         demand=lambda c: c.figures.natural_frequency_Hz,
         limited_by="torsional_stiffness_Nm_per_rad",
         relation="√(K_3 / J_L) / 2π ≥ f_req",
@@ -157,7 +157,7 @@ PROPERTIES: tuple[Check, ...] = (
         remedy=N_(
             "Choose a larger size or a single-stage ratio, lower the torque, or measure the position at the load."
         ),
-        asked="requirements.position_error_arcmin",
+        trigger="requirements.position_error_arcmin",
         instead="requirements.position_error_mm",
         demand=lambda c: c.figures.position_error_arcmin,
         limit=_permitted_error,
@@ -203,7 +203,7 @@ PROPERTIES: tuple[Check, ...] = (
         consequence=N_("The gear does not fit the installation space."),
         basis=N_("L_max of the table; with a small motor the gear may be as short as L_min."),
         remedy=N_("Choose a smaller size or a single-stage ratio, or check the drawing for your motor."),
-        asked="requirements.length_mm",
+        trigger="requirements.length_mm",
         demand=lambda c: c.gears.length_max_mm,
         limited_by="length_max_mm",
         relation="L_max ≤ L_req",

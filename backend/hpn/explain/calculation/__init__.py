@@ -1,6 +1,6 @@
-"""The calculation of one gear as the handbook's equations, each with its numbers, its limit and where that is from.
+"""The calculation of one gear as the handbook's equations, each with its numbers, its limit and the limit's source.
 
-Only shows what the selection has worked out: a test holds every formula against the figure of the candidate.
+Shows only results of the selection: a test compares every formula with the candidate's figure.
 """
 
 import math
@@ -32,7 +32,7 @@ STEPS: tuple[Callable[[CalculationSheet], Iterable[Step]], ...] = (
 OTHERWISE = N_("The version that saved this calculated it otherwise: its result stands, without an equation.")
 
 AGREEMENT = 1e-9
-"""Relative difference of a formula and its figure that rounding explains."""
+"""Relative difference of a formula and its figure that counts as rounding."""
 
 
 def calculation_of(
@@ -40,16 +40,16 @@ def calculation_of(
 ) -> tuple[Step, ...]:
     """Every equation that applies to a gear, in the order of STEPS.
 
-    `candidate` and `duty` are the answer for the gear under the application, as it was judged just now or when it was
-    saved. Steps that need an unpublished figure, or one that the answer lacks, are left out; a step whose equations do
-    not give the figures of the answer keeps its comparisons alone.
+    `candidate` and `duty` are the answer for the gear under the application, of this moment or saved. Steps that need
+    an unpublished figure, or one that the answer lacks, are left out; a step whose equations don't give the figures of
+    the answer keeps only its comparisons.
     """
     sheet = CalculationSheet(candidate, duty, gear, with_listed_motor(application, catalogue), catalogue)
     return tuple(step if _holds(step) else _as_saved(step) for make in STEPS for step in _known(make(sheet)))
 
 
 def _known(steps: Iterable[Step]) -> Iterator[Step]:
-    """Steps up to the first that needs a figure which the answer lacks."""
+    """Steps up to the first one that needs a figure missing in the answer."""
     try:
         yield from steps
     except LackingFigureError:
@@ -57,7 +57,7 @@ def _known(steps: Iterable[Step]) -> Iterator[Step]:
 
 
 def _holds(step: Step) -> bool:
-    """True for a step whose equations give its figures."""
+    """True if a step's equations give its figures."""
     try:
         return all(
             math.isclose(figure, computed, rel_tol=AGREEMENT, abs_tol=_room(formula))
@@ -71,12 +71,12 @@ def _holds(step: Step) -> bool:
 
 
 def _room(formula: Formula) -> float:
-    """Difference that is left of rounding where a formula takes one large number from another."""
-    taken = (one for one in inside(formula) if isinstance(one, Subtraction))
-    return AGREEMENT * math.fsum(abs(value_of(one.left)) + abs(value_of(one.right)) for one in taken)
+    """Rounding error of a formula that subtracts large numbers."""
+    differences = (one for one in inside(formula) if isinstance(one, Subtraction))
+    return AGREEMENT * math.fsum(abs(value_of(one.left)) + abs(value_of(one.right)) for one in differences)
 
 
 def _as_saved(step: Step) -> Step:
-    """A step without the equations of this version; a comparison stays where a figure alone is compared."""
+    """A step without the equations of this version; a comparison stays if it compares a single figure."""
     compared = tuple(one for one in step.comparisons if isinstance(one.tested, Term))
     return Step(step.code, step.title, step.equation, (), compared, (Sentence(OTHERWISE),))

@@ -1,6 +1,6 @@
-"""Formulas as trees of terms that know their symbol and their value: written in symbols, with numbers, or evaluated.
+"""Formulas as trees of terms with symbol and value: written in symbols, with numbers, or evaluated.
 
-One tree serves all three, so that what a reader sees substituted is what the result came from.
+One tree serves all three, so that the substituted numbers are those of the result.
 """
 
 import math
@@ -23,7 +23,7 @@ class Variable:
 
     @classmethod
     def of(cls, written: str) -> Self:
-        """Symbol as the tables of quantities and checks write it, its index behind an underscore: `T_av`."""
+        """Symbol from its spelling in the tables of quantities and checks, its index behind an underscore: `T_av`."""
         letter, _, index = written.partition("_")
         return cls(letter, index)
 
@@ -33,7 +33,7 @@ class Variable:
 
 
 class Expression:
-    """Base of all formulas: operators put them together as they are printed; a number stands for itself."""
+    """Base of all formulas: operators build them in their printed form; a number becomes a constant."""
 
     __slots__ = ()
 
@@ -92,7 +92,7 @@ class PhaseValues:
 
 @dataclass(frozen=True, slots=True)
 class Constant(Expression):
-    """A number that the equation itself prints."""
+    """A number printed in the equation itself."""
 
     value: float
     unit: str = ""
@@ -107,7 +107,7 @@ class Sum(Expression):
 
 @dataclass(frozen=True, eq=False)
 class PhaseSum(Expression):
-    """A sum over the phases: `make` gives the term of a phase from its quantities, in their order."""
+    """A sum over the phases: `make` makes the term of a phase from its quantities, in their order."""
 
     make: "Callable[..., Formula]"
     quantities: tuple[PhaseValues, ...]
@@ -126,7 +126,9 @@ class PhaseSum(Expression):
         return len(self.quantities[0].values)
 
     def values(self, of: "Formula", scale: Callable[[FloatArray, str], FloatArray] | None = None) -> FloatArray:
-        """The general term or a factor of it in every phase, shape (phases,); `shown` gives quantities other units."""
+        """Values of the general term or one of its factors in every phase, shape (phases,); `scale` converts
+        quantities.
+        """
         values = {
             each.symbol.of_phase("j"): scale(each.values, each.unit) if scale else each.values
             for each in self.quantities
@@ -151,7 +153,7 @@ class Product(Expression):
 
 @dataclass(frozen=True, slots=True)
 class Fraction(Expression):
-    """A fraction; `flat` where it stands in an exponent."""
+    """A fraction; `flat` in an exponent."""
 
     above: "Formula"
     below: "Formula"
@@ -168,7 +170,7 @@ class Power(Expression):
 
 @dataclass(frozen=True, slots=True)
 class Root(Expression):
-    """A root; the square root where no degree is given."""
+    """A root; the square root without a degree."""
 
     body: "Formula"
     degree: "Formula | None" = None
@@ -176,7 +178,7 @@ class Root(Expression):
 
 @dataclass(frozen=True, slots=True)
 class Magnitude(Expression):
-    """Magnitude, in bars; the number in them is shown without its sign."""
+    """Magnitude, in bars; a number in them is shown without its sign."""
 
     body: "Formula"
 
@@ -203,19 +205,19 @@ TEN_THIRDS = Fraction(Constant(10), Constant(3), flat=True)
 def value_of(formula: Formula, instead: Mapping[Variable, float] | None = None) -> float:
     """Value of a formula; raises the errors of arithmetic, such as ZeroDivisionError.
 
-    `instead` gives some symbols another value, but for those in a series.
+    `instead` gives some symbols another value, except those in a series.
     """
     return float(_evaluated(formula, instead or {}))
 
 
 def values_of(formula: Formula, values: Mapping[Variable, FloatArray]) -> FloatArray:
-    """Values of a formula where some of its symbols have many values each."""
+    """Values of a formula for arrays of values of some symbols."""
     result: FloatArray = _evaluated(formula, values)
     return result
 
 
 def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
-    """Value of a formula, a number or an array as its symbols are."""
+    """Value of a formula, a number or an array like its symbols."""
 
     def each(formulas: Sequence[Formula]) -> list[Any]:
         return [_evaluated(one, instead) for one in formulas]
@@ -244,12 +246,12 @@ def _evaluated(formula: Formula, instead: Mapping[Variable, Any]) -> Any:
 
 
 def over_phases(make: Callable[..., Formula], *quantities: PhaseValues) -> PhaseSum:
-    """Series over the phases; `make` gives the term of a phase from its quantities, in their order."""
+    """Series over the phases; `make` makes the term of a phase from its quantities, in their order."""
     return PhaseSum(make, quantities)
 
 
 def in_wire_units(formula: Formula) -> bool:
-    """True for a formula that holds in the units of the wire alone: of an inertia, or of a torque and its arm."""
+    """True for a formula that holds only in the units of the wire: with an inertia, or with a torque and its arm."""
     units = {one.unit for one in inside(formula) if isinstance(one, Term)}
     return bool(units & {"kgm2", "rad_per_s2"}) or {"Nm", "mm"} <= units
 

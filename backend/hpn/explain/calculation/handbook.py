@@ -1,4 +1,4 @@
-"""Equations 17.2 to 17.10 with the numbers of one gear, and the effect of rounding in between."""
+"""Equations 17.2 to 17.10 with the numbers of one gear, and the effect of intermediate rounding."""
 
 import math
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ VARYING = N_(
 PEAKS = N_("Where torque and speed vary in a phase, its peak counts here.")
 
 LARGEST_WORTH_ROUNDING = 1e6
-"""Largest number that is rounded to a whole number by hand."""
+"""Upper limit of numbers that are rounded to whole numbers by hand."""
 
 
 def _average_torque(sheet: CalculationSheet) -> Iterable[Step]:
@@ -103,7 +103,7 @@ def _stops(sheet: CalculationSheet) -> Iterable[Step]:
     exponent = 8.5 - 1.5 * (T_k / T_R)
     x = Term(Variable("x"), value_of(exponent))
     count = EquationLine(allowed, 10**x, rounded_down=True)
-    expected = sheet.given("emergency_stop.count") or allowed
+    expected = sheet.input_of("emergency_stop.count") or allowed
     limit = sheet.compared("momentary_peak_count", expected)
     yield step_of_check("momentary_peak_count", (EquationLine(x, exponent), count), limit, _hand_stops(x, count))
 
@@ -170,7 +170,7 @@ def _is_printed(sheet: CalculationSheet) -> bool:
 
 
 def _hand(value: float) -> float | None:
-    """Figure rounded as the worked example does by hand: whole, or two digits where small."""
+    """Figure rounded by hand as in the worked example: whole, or two digits if small; None outside the range."""
     if not 0.01 <= value < LARGEST_WORTH_ROUNDING:
         return None
     return float(round(value)) if value >= 10 else float(f"{value:.2g}")

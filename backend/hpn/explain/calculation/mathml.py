@@ -29,19 +29,19 @@ from hpn.words.reader import Reader
 from hpn.words.wording import Quantity
 
 SHOWN_TERMS = 6
-"""A sum over more phases is abbreviated."""
+"""Largest number of terms in a sum; longer sums are abbreviated."""
 
 DIGITS = 9
 """Significant digits of a substituted number: enough to calculate the next line by hand."""
 
 
 def number(reader: Reader, value: float, unit: str) -> str:
-    """Value as the reader sees it, without its unit."""
+    """Value in the reader's notation, without its unit."""
     return reader.number(Quantity(value, unit, DIGITS))
 
 
 Part = tuple[Formula | Variable, bool] | str
-"""A formula and whether its numbers are substituted, or the relation between two of them."""
+"""A formula and True if its numbers are substituted, or the relation between two formulas."""
 
 
 def mathml(reader: Reader, *parts: Part) -> str:
@@ -52,12 +52,12 @@ def mathml(reader: Reader, *parts: Part) -> str:
 
 
 def in_symbols(reader: Reader, line: EquationLine) -> str:
-    """An equation as the handbook prints it."""
+    """An equation in symbols, as in the handbook."""
     return mathml(reader, (line.result.symbol, False), "=", (line.formula, False))
 
 
 def substituted(reader: Reader, line: EquationLine) -> str:
-    """The same equation's right side with its numbers."""
+    """Right side of an equation with its numbers."""
     return mathml(_reader_of(reader, line), "=", (line.formula, True))
 
 
@@ -71,17 +71,17 @@ def result(reader: Reader, line: EquationLine) -> str:
 
 
 def _reader_of(reader: Reader, line: EquationLine) -> Reader:
-    """The reader, in the units of the wire where the line holds in them alone."""
+    """The reader, with units of the wire if the line holds only in these."""
     return replace(reader, units=()) if in_wire_units(line.formula) else reader
 
 
 def compared(reader: Reader, comparison: Comparison, *, continued: bool = False) -> str:
-    """Comparison of demand and limit, which the user's own reserve may lower; `continued` behind its equation."""
+    """Comparison of demand and limit, with the user's own reserve; `continued` if it follows its equation."""
     return mathml(reader, *_compared(comparison, continued))
 
 
 def compared_apart(reader: Reader, comparison: Comparison, *, continued: bool = False) -> str:
-    """The same with an element for each side, so that a narrow page breaks it before a sign and nowhere else."""
+    """Comparison with an element for each side, so that a narrow page breaks it only before a sign."""
     sides: list[list[Part]] = [[]]
     for part in _compared(comparison, continued):
         if isinstance(part, str) and sides[-1]:
@@ -114,9 +114,9 @@ def _compared(comparison: Comparison, continued: bool) -> list[Part]:
 
 @dataclass(frozen=True, slots=True)
 class Addition:
-    """Sums of a step as columns: a head for each as MathML and as text, rows by phase, and what each adds up to.
+    """Sums of a step as columns: a head for each as MathML and as text, rows by phase, and the totals.
 
-    `left_out` is the number of phases in the middle that are not written out.
+    `left_out` is the number of omitted phases in the middle.
     """
 
     heads: list[tuple[str, str]]
@@ -126,7 +126,7 @@ class Addition:
 
 
 def addition(reader: Reader, step: Step) -> Addition | None:
-    """Sums of a step, where a term is more than a product of inputs, with every power that it takes."""
+    """Sums of a step, with every power in them; None if each term is just a product of inputs."""
     series = [one for line in step.lines for one in inside(line.formula) if isinstance(one, PhaseSum)]
     columns = list[tuple[PhaseSum, Formula]]()
     for one in sorted(series, key=lambda one: len(_factors(one.general))):
@@ -174,7 +174,9 @@ def _operator(text: str) -> str:
 
 
 class _Writer:
-    """Writes MathML. Plain strings, because a page has hundreds of these; every leaf is escaped where it is written."""
+    """Writer of MathML. It makes plain strings, since a page has hundreds of these; every leaf is escaped where it is
+    written.
+    """
 
     def __init__(self, reader: Reader, numbers: bool) -> None:
         self.reader, self.numbers = reader, numbers
@@ -207,7 +209,7 @@ class _Writer:
                 return self.shaped(formula)
 
     def shaped(self, formula: Fraction | Power | Root) -> str:
-        """Formula that is not a row of operands, such as a fraction."""
+        """MathML of a formula that is not a row of operands, such as a fraction."""
         match formula:
             case Fraction(above, below, flat=True):
                 return self.row("/", (self.write(above), self.write(below)))
@@ -230,7 +232,7 @@ class _Writer:
         return f"<mrow>{before}{self.write(body)}{after}</mrow>"
 
     def factor(self, formula: Formula) -> str:
-        """A factor of a product, or what is subtracted: in brackets where it is a sum or a negative number."""
+        """A factor of a product, or a subtrahend: in brackets if it is a sum or a negative number."""
         in_brackets = isinstance(formula, Sum | Subtraction) or (self.numbers and _is_negative(formula))
         return self.fenced("(", formula, ")") if in_brackets else self.write(formula)
 
@@ -244,7 +246,7 @@ class _Writer:
         return f"<mrow><mi>{name}</mi><mo>(</mo>{_operator(';').join(arguments)}<mo>)</mo></mrow>"
 
     def plain(self, text: str) -> str:
-        """A number as it is written, without a unit."""
+        """A number as written, without a unit."""
         return f"<mn>{escape(text)}</mn>"
 
     def summed(self, general: Formula) -> str:
@@ -267,7 +269,7 @@ class _Writer:
 
 
 class _Liner(_Writer):
-    """Writes a line of text, not escaped yet."""
+    """Writer of a line of text, not escaped yet."""
 
     def row(self, operator: str, parts: Iterable[str]) -> str:
         """Parts with an operator between them."""
@@ -284,7 +286,7 @@ class _Liner(_Writer):
                 return f"root({self.write(degree) if degree else 2})({self.write(body)})"
 
     def grouped(self, formula: Formula) -> str:
-        """In brackets, unless it is a single term."""
+        """A formula in brackets, unless it is a single term."""
         text = self.write(formula)
         return text if isinstance(formula, Term | Constant) else f"({text})"
 
@@ -297,7 +299,7 @@ class _Liner(_Writer):
         return f"{name}({'; '.join(arguments)})"
 
     def plain(self, text: str) -> str:
-        """A number as it is written, without a unit."""
+        """A number as written, without a unit."""
         return text
 
     def summed(self, general: Formula) -> str:

@@ -6,9 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from hpn.account.readings import thermal_of_candidate
 from hpn.engine.motor_torques import efficiency_at
 from hpn.explain.calculation.formula import Formula, PhaseValues, Root, Sum, Term, Variable, over_phases, values_of
-from hpn.explain.calculation.sheet import CalculationSheet, EquationLine, Step, known, step_of_check
+from hpn.explain.calculation.sheet import (
+    CalculationSheet,
+    Comparison,
+    EquationLine,
+    Step,
+    known,
+    step_of_check,
+)
 from hpn.physics.equations import FloatArray
 from hpn.physics.motion import Course, peak_instant, square_torque
 from hpn.words.quantities import CANDIDATE, INPUTS
@@ -26,10 +34,10 @@ BY_CURVE = N_(
 
 
 def _torques(sheet: CalculationSheet) -> Iterable[Step]:
-    course, inertia = sheet.duty.courses.get(0), sheet.given("requirements.motor.inertia_kgm2")
+    course, inertia = sheet.duty.courses.get(0), sheet.input_of("requirements.motor.inertia_kgm2")
     if course is not None and inertia is not None:
         return _along_the_motion(sheet, course, inertia)
-    stated = sheet.given("requirements.efficiency")
+    stated = sheet.input_of("requirements.efficiency")
     if (stated is None and sheet.gear.designation in sheet.catalogue.efficiency) or sheet.gear.no_load_torque_Nm:
         return _by_phase(sheet)
     eta = stated or Term(EFFICIENCY, 1.0)
@@ -42,7 +50,7 @@ def _torques(sheet: CalculationSheet) -> Iterable[Step]:
 
 
 def _along_the_motion(sheet: CalculationSheet, course: Course, inertia: Term) -> Iterable[Step]:
-    """Torques with the motor's own inertia: the peak at its instant, the RMS from that of each phase."""
+    """Steps of torques with the motor's own inertia: the peak at its instant, the RMS from that of each phase."""
     inertia, T_0 = _own_inertia(sheet, inertia), _without_load(sheet)
     text = N_("From T / (i · η) + J_m · i · α at every instant of the motion; T · η / i where the load drives.")
     own = [Sentence(OWN)] if sheet.gear.inertia_kgm2 or T_0 else []
@@ -65,20 +73,20 @@ def _along_the_motion(sheet: CalculationSheet, course: Course, inertia: Term) ->
 
 
 def _own_inertia(sheet: CalculationSheet, motor: Term) -> Term:
-    """Inertia at the input: the motor's, with the gear's own where it is known."""
+    """Inertia at the input: the motor's, plus the gear's own if known."""
     own = sheet.gear.inertia_kgm2
     return replace(motor, value=motor.value + own) if own else motor
 
 
 def _without_load(sheet: CalculationSheet) -> float:
-    """Torque of the gear without load in Nm; 0 where it is not known."""
+    """No-load torque of the gear in Nm; 0 if unknown."""
     return sheet.gear.no_load_torque_Nm or 0.0
 
 
 def _at_its_instant(
     sheet: CalculationSheet, course: Course, inertia: Term, efficiency: FloatArray
 ) -> tuple[Formula, tuple[Sentence, ...]]:
-    """Largest torque as the parts of the load and of the motor's inertia, with notes on both."""
+    """Largest torque as a sum of the load's part and the motor inertia's part, with notes on both."""
     i = sheet.i.value
     T_0 = _without_load(sheet)
     instant = peak_instant(
@@ -120,12 +128,12 @@ def _magnitude_of(parts: Sequence[tuple[float, Formula]]) -> Formula:
 
 def _efficiencies(sheet: CalculationSheet, torque_Nm: FloatArray) -> FloatArray:
     """Efficiency of the gear at the torque of every phase."""
-    return efficiency_at(torque_Nm, sheet.gear, sheet.catalogue, sheet.duty.asked["requirements.efficiency"].item())
+    return efficiency_at(torque_Nm, sheet.gear, sheet.catalogue, sheet.duty.inputs["requirements.efficiency"].item())
 
 
 def _on_efficiency(sheet: CalculationSheet) -> tuple[Sentence]:
     """Source of the efficiency."""
-    if sheet.given("requirements.efficiency") is not None:
+    if sheet.input_of("requirements.efficiency") is not None:
         return (Sentence(STATED),)
     return (Sentence(BY_CURVE if sheet.gear.designation in sheet.catalogue.efficiency else LOSS_FREE),)
 
@@ -165,19 +173,35 @@ def _step(sheet: CalculationSheet, code: str, symbol: Variable, formula: Formula
     if not sheet.candidate.says(f"{code}_Nm"):
         return
     torque = replace(known(sheet.figure(f"{code}_Nm")), symbol=symbol)
-    yield step_of_check(code, (EquationLine(torque, formula),), sheet.compared(code, torque), notes)
+    compared, motor = sheet.compared(code, torque), sheet.application.requirements.motor
+    if motor is not None and motor.curve:
+        compared, on_curve = _along_curve(sheet, code, compared)
+        notes += on_curve
+    yield step_of_check(code, (EquationLine(torque, formula),), compared, notes)
+
+
+def _along_curve(
+    sheet: CalculationSheet, code: str, compared: tuple[Comparison, ...]
+) -> tuple[tuple[Comparison, ...], tuple[Sentence, ...]]:
+    """Comparisons with the curve, the peak at its nearest point and the RMS by both rules, and notes on them."""
+    if code == "motor_rated_torque":
+        both = thermal_of_candidate(sheet.candidate)
+        return tuple(replace(one, limit_names=(Variable("M", "c"),)) for one in compared), (both,) if both else ()
+    at_point, limit = Variable("T", "in"), (Variable("M", "p"),)
+    note = Sentence(N_("T_in and M_p are those of the point nearest to the motor’s peak curve."))
+    return tuple(replace(one, tested=Term(at_point, one.value, "Nm"), limit_names=limit) for one in compared), (note,)
 
 
 # --- Torque limit of the drive ---------------------------------------------------------------------------------------
 
 
 def _torque_limit(sheet: CalculationSheet) -> Iterable[Step]:
-    """Torque at the motor with which the gear stays at or below T_R."""
+    """Step of the motor torque that keeps the gear at or below T_R."""
     limit, T_R = sheet.figure("motor_torque_limit_Nm"), sheet.rating("repeated_peak_torque_Nm")
     if limit is None or T_R is None:
         return
     source = N_("η = 1, since no efficiency is known: in braking up to T_R / η.")
-    if sheet.given("requirements.efficiency") is not None:
+    if sheet.input_of("requirements.efficiency") is not None:
         source = STATED
     elif sheet.gear.designation in sheet.catalogue.efficiency:
         source = N_("η at T_R from the efficiency curve that you supplied.")
@@ -190,9 +214,9 @@ def _torque_limit(sheet: CalculationSheet) -> Iterable[Step]:
 
 
 def _inertia_ratio(sheet: CalculationSheet) -> Iterable[Step]:
-    """Inertia of the load at the motor over the motor's own."""
-    load, motor = sheet.load_inertia, sheet.given("requirements.motor.inertia_kgm2")
-    if load is None or motor is None or sheet.given("requirements.motor.inertia_ratio") is None:
+    """Step of the load's inertia at the motor over the motor's own."""
+    load, motor = sheet.load_inertia, sheet.input_of("requirements.motor.inertia_kgm2")
+    if load is None or motor is None or sheet.input_of("requirements.motor.inertia_ratio") is None:
         return
     formula: Formula = load / (sheet.i**2 * motor)
     if (own := sheet.rating("inertia_kgm2")) is not None:
@@ -205,4 +229,6 @@ def _inertia_ratio(sheet: CalculationSheet) -> Iterable[Step]:
 
 
 MOTOR = (_torques, _torque_limit, _inertia_ratio)
-"""Steps of peak and RMS torque, loss-free where no efficiency is known, of the limit, and of the ratio if asked for."""
+"""Steps of peak and RMS torque (loss-free if no efficiency is known), of the drive's limit, and of a requested
+ratio.
+"""

@@ -1,4 +1,4 @@
-"""The output bearing: equivalent load of each phase and of the cycle, the load that its life allows, and its life."""
+"""The output bearing: equivalent load of each phase and of the cycle, the load permitted by its life, and its life."""
 
 import math
 from collections.abc import Iterable
@@ -25,11 +25,11 @@ CENTRE_OF_OTHERS = N_("x_c is the distance that you gave for all sizes without o
 
 
 def bearing_steps(sheet: CalculationSheet) -> Iterable[Step]:
-    """Steps of the output bearing where loads are given and its limits are known."""
+    """Steps of the output bearing if loads are given and its limits are known."""
     load, life = sheet.application.loads, sheet.candidate.check("output_bearing_life")
     if load is None or life is None or life.demand is None or life.limit is None:
         return
-    f_w = known(sheet.given("output_load.load_coefficient"))
+    f_w = known(sheet.input_of("output_load.load_coefficient"))
     of_phases = PhaseValues(P, phase_loads(sheet.duty, sheet.gears)[0, 0] / f_w.value)
     mean, k = Term(P.of_phase("m"), life.demand / f_w.value), Term(Variable("k"), life.limit)
     yield _largest(sheet, load, of_phases, f_w)
@@ -41,7 +41,7 @@ def bearing_steps(sheet: CalculationSheet) -> Iterable[Step]:
 
 
 def _largest(sheet: CalculationSheet, load: OutputLoad, loads: PhaseValues, f_w: Term) -> Step:
-    """Step of the equivalent load of each different load, the largest one compared with the published maxima."""
+    """Step of the equivalent load of each different load, with the largest compared to the published maxima."""
     first: dict[tuple[float, float], int] = {}
     for place, pair in enumerate(zip(sheet.radial.values.tolist(), sheet.axial.values.tolist(), strict=True)):
         first.setdefault(pair, place)
@@ -66,8 +66,8 @@ def _largest(sheet: CalculationSheet, load: OutputLoad, loads: PhaseValues, f_w:
 
 
 def _at_centre(sheet: CalculationSheet, P: Term, place: int) -> Iterable[EquationLine]:
-    """Radial load at the shaft's centre that stands for where the loads act, where that is given."""
-    x, y = sheet.duty.asked["output_load.radial_position_mm"].item(), sheet.given("output_load.axial_radius_mm")
+    """Radial load at the shaft's centre equivalent to loads that act elsewhere."""
+    x, y = sheet.duty.inputs["output_load.radial_position_mm"].item(), sheet.input_of("output_load.axial_radius_mm")
     x_c = _centre(sheet)
     if x_c is None or y is None or (math.isnan(x) and not y.value):
         return
@@ -81,13 +81,13 @@ def _at_centre(sheet: CalculationSheet, P: Term, place: int) -> Iterable[Equatio
 
 
 def _centre(sheet: CalculationSheet) -> Term | None:
-    """Distance of the shaft's centre that counts for the gear, None where it is not known."""
+    """Distance of the shaft's centre for the gear; None if unknown."""
     x_c = shaft_centre_mm(sheet.duty, sheet.gears).item()
     return None if math.isnan(x_c) else Term(Variable.of(INPUTS[CENTRE].symbol), x_c, "mm")
 
 
 def _note_on_centre(sheet: CalculationSheet, load: OutputLoad) -> list[Sentence]:
-    """Note on where that distance comes from, where a lever acts."""
+    """Note on the origin of this distance, where a lever acts."""
     if _centre(sheet) is None or radial_at_centre(sheet.duty, sheet.gears) is sheet.duty.phases.radial_N:
         return []
     own = CENTRE_OF_SIZE if sheet.gear.size in by_size(load.shaft_centre_mm) else CENTRE_OF_OTHERS
@@ -112,7 +112,7 @@ def _equivalent_load(sheet: CalculationSheet, model: str, place: int, P: Term) -
 
 
 def _mean(sheet: CalculationSheet, load: OutputLoad, loads: PhaseValues, mean: Term, k: Term, f_w: Term) -> Step:
-    """Step of the cycle's equivalent load and of the load k that the required life allows."""
+    """Step of the cycle's equivalent load and of the load k that the required life permits."""
     speed, life = sheet.catalogue.bearing_reference
     damage = over_phases(lambda n, t, P: abs(n) * t * P**3, sheet.speed, sheet.time, loads)
     above, below = Constant(speed, "rpm") * Constant(life, "h"), sheet.n_out_av * _required(sheet, load)
@@ -124,7 +124,7 @@ def _mean(sheet: CalculationSheet, load: OutputLoad, loads: PhaseValues, mean: T
 
 def _required(sheet: CalculationSheet, load: OutputLoad) -> Formula:
     """Required life as L50."""
-    life = known(sheet.given("output_load.life_h"))
+    life = known(sheet.input_of("output_load.life_h"))
     return bearing.L50_PER_L10 * life if load.life_basis == "L10" else life
 
 

@@ -29,7 +29,7 @@ def notes_on_shaft(sheet: CalculationSheet) -> list[Sentence]:
 
 
 def of_shaft(sheet: CalculationSheet, index: str, place: int) -> Iterable[EquationLine]:
-    """Tangential force in a phase, and the radial and axial load of pinion or pulley with what is typed."""
+    """Tangential force in a phase, and the radial and axial load of pinion or pulley plus typed loads."""
     drive = sheet.application.shaft_drive
     if not drive:
         return
@@ -43,9 +43,9 @@ def of_shaft(sheet: CalculationSheet, index: str, place: int) -> Iterable[Equati
     radial, axial = (values.term(*own) for values in (sheet.radial, sheet.axial))
     typed_radial, typed_axial = (values[0, 0].item(own[1]) for values in (typed.radial_N, typed.axial_N))
     if drive == "belt":
-        yield EquationLine(radial, _added(known(sheet.given("output_load.belt_tension_factor")) * F_t, typed_radial))
+        yield EquationLine(radial, _added(known(sheet.input_of("output_load.belt_tension_factor")) * F_t, typed_radial))
         return
-    beta = math.radians(known(sheet.given("output_load.rack_helix_deg")).value)
+    beta = math.radians(known(sheet.input_of("output_load.rack_helix_deg")).value)
     q = Term(Variable("q"), math.tan(math.radians(PRESSURE_ANGLE_DEG)) / math.cos(beta))
     yield EquationLine(radial, _added(F_t * Root(Constant(1) + q**2, Constant(2)), typed_radial))
     if beta:
@@ -53,7 +53,7 @@ def of_shaft(sheet: CalculationSheet, index: str, place: int) -> Iterable[Equati
 
 
 def _force(sheet: CalculationSheet, F_t: Term, index: str, place: int) -> Formula:
-    """Torque over half the diameter, or where it is larger the force itself."""
+    """Torque over half the diameter, or the force itself where it is larger."""
     d = Term(Variable("d"), sheet.duty.shaft_diameter_mm.item(), "mm")
     by_torque = Constant(2000) * abs(sheet.peak_torque.term(index, place)) / d
     if F_t.value > 2000 * abs(sheet.peak_torque.values.item(place)) / d.value * (1 + ROUNDING):

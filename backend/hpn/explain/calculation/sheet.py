@@ -1,4 +1,4 @@
-"""Steps, equations and checks of a calculation, and the sheet of figures that they use."""
+"""Steps, equations and checks of a calculation, and the sheet of their figures."""
 
 import math
 from collections.abc import Mapping
@@ -32,7 +32,7 @@ from hpn.words.wording import Named, Sentence
 
 @dataclass(frozen=True, slots=True)
 class EquationLine:
-    """One equation: its result and its formula; `rounded_down` where the result is a whole number."""
+    """One equation: its result and its formula; `rounded_down` for a whole number as the result."""
 
     result: Term
     formula: Formula
@@ -46,9 +46,9 @@ class EquationLine:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A check: the tested formula and its value, the limit by its names, and the source of that.
+    """A check: the tested formula and its value, the limit by its names, and the limit's source.
 
-    `source` is blank where the limit is the user's own; `allowed` is their u.
+    `source` is blank for the user's own limit; `allowed` is the user's u.
     """
 
     code: str
@@ -71,7 +71,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One equation of the handbook, or of the model that stands in for it; `equation` is None where none is printed."""
+    """One equation of the handbook, or of the model in its place; `equation` is None if none is printed."""
 
     code: str
     title: str
@@ -82,7 +82,7 @@ class Step:
 
     @property
     def continued(self) -> bool:
-        """True where the first comparison goes on from the result of the last line."""
+        """True if the first comparison continues from the result of the last line."""
         if not self.lines or not self.comparisons or self.lines[-1].rounded_down:
             return False
         return self.comparisons[0].tested == self.lines[-1].result
@@ -100,11 +100,11 @@ def step_of_check(
 
 
 class LackingFigureError(LookupError):
-    """A figure that a step needs and that a saved answer does not have."""
+    """A figure that a step needs and a saved answer lacks."""
 
 
 def known(term: Term | None) -> Term:
-    """Term of a value that its step needs; raises LackingFigureError without one."""
+    """Term of a needed value; raises LackingFigureError without one."""
     if term is None:
         raise LackingFigureError
     return term
@@ -113,7 +113,7 @@ def known(term: Term | None) -> Term:
 class CalculationSheet:
     """Figures for the steps of one gear: the candidate's, the gear's, the duty's and the phases.
 
-    What an answer says is taken from it, never computed again.
+    Figures of an answer are read from it, never computed again.
     """
 
     def __init__(
@@ -132,7 +132,8 @@ class CalculationSheet:
         self.T_av, self.n_out_av = self._of_duty("average_torque_Nm"), self._of_duty("average_output_speed_rpm")
         self.T_max, self.n_out_max = self._of_duty("maximum_torque_Nm"), self._of_duty("maximum_output_speed_rpm")
         self.i = known(self.rating("ratio"))
-        self.load_inertia = self._load_inertia()
+        inertia, place = self.duty.load_inertia_kgm2.item(), "requirements.load_inertia_kgm2"
+        self.load_inertia = None if math.isnan(inertia) else _term(INPUTS[place], place, inertia)
 
     @property
     def n_in_av(self) -> Term:
@@ -146,22 +147,17 @@ class CalculationSheet:
 
     @property
     def T_k(self) -> Term | None:
-        """Torque of the emergency stop: the answer's, else as it is given."""
+        """Torque of the emergency stop: the answer's, else as given."""
         own = self.figure("stop_torque_Nm") if self.candidate.says("stop_torque_Nm") else None
-        return own or self.given("emergency_stop.torque_Nm")
+        return own or self.input_of("emergency_stop.torque_Nm")
 
     def _of_phases(self, name: str) -> PhaseValues:
         values: FloatArray = getattr(self.duty.phases, name)[0, 0]
         return PhaseValues(Variable.of(INPUTS[f"phase.{name}"].symbol), values, suffix_of(name))
 
-    def _load_inertia(self) -> Term | None:
-        """Inertia of the load: the motion's own, else as it is given; None without one."""
-        value, place = self.duty.load_inertia_kgm2.item(), "requirements.load_inertia_kgm2"
-        return None if math.isnan(value) else _term(INPUTS[place], place, value)
-
     @property
     def varies(self) -> bool:
-        """True where torque or speed vary in some phase."""
+        """True if torque or speed varies in at least one phase."""
         return self.peak_torque is not self.torque or self.rms_torque is not self.torque or self._outruns
 
     @cached_property
@@ -169,7 +165,7 @@ class CalculationSheet:
         return bool((self.duty.phases.peak_speed_rpm != self.duty.phases.speed_rpm).any())
 
     def _varying(self, name: str, steady: PhaseValues) -> PhaseValues:
-        """Figure of phases that vary; of a steady phase where none varies."""
+        """Figure of varying phases; that of steady phases if none varies."""
         varying = self._of_phases(name)
         return varying if (varying.values != steady.values).any() else steady
 
@@ -177,25 +173,25 @@ class CalculationSheet:
         return _term(DUTY[name], name, getattr(self.figures, name))
 
     def figure(self, name: str) -> Term | None:
-        """Figure of the candidate, or None; LackingFigureError where its version did not know it."""
+        """Figure of the candidate, or None; raises LackingFigureError if its version did not know the figure."""
         if not self.candidate.says(name):
             raise LackingFigureError(name)
         value: float | None = getattr(self.candidate, name)
         return None if value is None else _term(CANDIDATE[name], name, value)
 
     def rating(self, name: str) -> Term | None:
-        """A figure of the catalogue; None where it is not published."""
+        """A figure of the catalogue; None if not published."""
         value: float | None = getattr(self.gear, name)
         return None if value is None else _term(GEAR[name], name, value)
 
-    def given(self, place: str) -> Term | None:
-        """Magnitude of an input; None where it is not given."""
-        value = abs(self.duty.asked[place].item())
+    def input_of(self, place: str) -> Term | None:
+        """Magnitude of an input; None if not given."""
+        value = abs(self.duty.inputs[place].item())
         return None if math.isnan(value) else _term(INPUTS[place], place, value)
 
     @cached_property
     def gears(self) -> GearList:
-        """List of this gear alone, as the engine takes it."""
+        """List of this gear alone, for the engine."""
         return self.catalogue.listed([self.gear])
 
     @cached_property
@@ -206,10 +202,12 @@ class CalculationSheet:
     @cached_property
     def cycle_time(self) -> Sum:
         """t_1 + … + t_n + t_p."""
-        return over_phases(lambda t: t, self.time) + known(self.given("duty_cycle.pause_s"))
+        return over_phases(lambda t: t, self.time) + known(self.input_of("duty_cycle.pause_s"))
 
     def compared(self, code: str, tested: Formula) -> tuple[Comparison, ...]:
-        """The check of a code, where the application asks for it and the gear's figures are published."""
+        """Comparison for a check's code; empty unless the application asks for it and the gear's figures are
+        published.
+        """
         check, result = BY_CODE[code], self.candidate.check(code)
         if result is None or result.demand is None or result.limit is None:
             return ()
@@ -230,7 +228,7 @@ class CalculationSheet:
         )
 
     def _source(self, check: Check) -> str:
-        """Place where the limit of a check is printed; blank for the user's own, such as a required minimum."""
+        """Source in which a check's limit is printed; blank for the user's own limit, such as a required minimum."""
         figure = None if check.kind == "minimum" else check.limited_by
         return self.gear.sources.get(figure, "") if figure else ""
 
@@ -240,6 +238,6 @@ def _term(named: Named, name: str, value: float) -> Term:
 
 
 def _limit_names(check: Check) -> tuple[Variable, ...]:
-    """Symbols of a check's limit in its relation, such as `T_av ≤ T_A = T_N`; none where it is a number."""
+    """Symbols of a check's limit in its relation, such as `T_av ≤ T_A = T_N`; empty for a number."""
     names = check.relation.replace("≥", "≤").partition(" ≤ ")[2].split(" = ")
     return tuple(Variable.of(name) for name in names if not name.isdigit())

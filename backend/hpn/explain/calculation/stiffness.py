@@ -17,13 +17,13 @@ def frequency_steps(sheet: CalculationSheet) -> Iterable[Step]:
     K_3, J = sheet.rating("torsional_stiffness_Nm_per_rad"), sheet.load_inertia
     if K_3 is None:
         return
-    held, free = sheet.figure("natural_frequency_Hz"), sheet.figure("drive_resonance_Hz")
-    if held is not None and J is not None:
-        lines = [EquationLine(held, _frequency(K_3 / J))]
+    braked, free = sheet.figure("natural_frequency_Hz"), sheet.figure("drive_resonance_Hz")
+    if braked is not None and J is not None:
+        lines = [EquationLine(braked, _frequency(K_3 / J))]
         if free is not None:
             lines.append(EquationLine(free, _frequency(K_3 * (1 / J + 1 / at_output(sheet)))))
         note = Sentence(CANDIDATE["natural_frequency_Hz"].caveat)
-        yield step_of_check("natural_frequency", tuple(lines), sheet.compared("natural_frequency", held), (note,))
+        yield step_of_check("natural_frequency", tuple(lines), sheet.compared("natural_frequency", braked), (note,))
 
 
 def _frequency(square: Formula) -> Formula:
@@ -31,13 +31,13 @@ def _frequency(square: Formula) -> Formula:
 
 
 def at_output(sheet: CalculationSheet) -> Formula:
-    """Inertia of the motor at the output, with the gear's own where it is known."""
-    J_m, J_g = known(sheet.given("requirements.motor.inertia_kgm2")), sheet.rating("inertia_kgm2")
+    """Inertia of the motor at the output, plus the gear's own if known."""
+    J_m, J_g = known(sheet.input_of("requirements.motor.inertia_kgm2")), sheet.rating("inertia_kgm2")
     return sheet.i**2 * (J_m if J_g is None else J_m + J_g)
 
 
 def position_steps(sheet: CalculationSheet) -> Iterable[Step]:
-    """Wind-up under T_max, and what adds up to the position error."""
+    """Wind-up under T_max, and the position error with its parts."""
     K_3 = sheet.rating("torsional_stiffness_Nm_per_rad")
     if K_3 is None:
         return
@@ -49,7 +49,7 @@ def position_steps(sheet: CalculationSheet) -> Iterable[Step]:
     if lowest <= 0 <= highest:
         parts.append(known(sheet.rating("backlash_arcmin")))
     lines = [EquationLine(wind_up, sheet.T_max / K_3 * ARCMIN), EquationLine(error, Sum(tuple(parts)))]
-    length, radius = sheet.figure("position_error_mm"), sheet.given("requirements.position_radius_mm")
+    length, radius = sheet.figure("position_error_mm"), sheet.input_of("requirements.position_radius_mm")
     if length is not None and radius is not None:
         lines.append(EquationLine(length, error / ARCMIN * radius))
     notes = (*_on_the_range(sheet), Sentence(CANDIDATE["position_error_arcmin"].caveat))
@@ -57,7 +57,7 @@ def position_steps(sheet: CalculationSheet) -> Iterable[Step]:
 
 
 def _on_the_range(sheet: CalculationSheet) -> Iterable[Sentence]:
-    """Notes on where T_lo and T_hi come from."""
+    """Notes on the origin of T_lo and T_hi."""
     duty, motion = sheet.duty, sheet.application.duty_cycle.motion
     both = duty.torque_both_ways.item()
     yield Sentence(BOTH_WAYS if both else BY_SIGN if motion is None else BY_COURSE)

@@ -34,7 +34,7 @@ COURSE_BOUNDS = N_("Upper bounds: the load drives all along and losses are left 
 
 def stop_steps(sheet: CalculationSheet) -> Iterable[Step]:
     """The torque of a stop by the brake on the gear, and its course."""
-    T_B, T_k = sheet.given("emergency_stop.brake.torque_Nm"), sheet.figure("stop_torque_Nm")
+    T_B, T_k = sheet.input_of("emergency_stop.brake.torque_Nm"), sheet.figure("stop_torque_Nm")
     if T_B is None or T_k is None:
         return
     stops = Figures(sheet.duty, sheet.gears, sheet.catalogue).stops
@@ -46,7 +46,7 @@ def stop_steps(sheet: CalculationSheet) -> Iterable[Step]:
 
 @dataclass(frozen=True, slots=True)
 class _Load:
-    """Torques of the load at the gear, and the lines that give them along a motion."""
+    """Torques of the load at the gear, and the lines that derive them from a motion."""
 
     T_d: Term
     T_v: Term
@@ -55,7 +55,7 @@ class _Load:
 
     @classmethod
     def of(cls, sheet: CalculationSheet) -> "_Load":
-        """Load of the motion, else as it is given: T_d and T_v are then T_L."""
+        """Load of the motion, else as given: T_d and T_v are then T_L."""
         whole = sheet.duty.stop_load
         T_d, T_v, T_o = (np.asarray(x).item() for x in (whole.pulling_Nm, whole.driving_Nm, whole.opposing_Nm))
         opposing = Term(Variable("T", "o"), T_o, "Nm")
@@ -86,7 +86,7 @@ class _Load:
 
 
 def _torque(sheet: CalculationSheet, stops: Stops, load: _Load, at_gear: Formula, T_k: Term) -> Step:
-    """The torque T_k about which, and how far, the gear swings."""
+    """Step of the torque T_k, with the torque about which the gear swings."""
     J, eta = sheet.load_inertia, Term(Variable("η"), np.asarray(stops.brake.efficiency).item())
     T_r = Term(Variable("T", "r"), settled_torque(brake=stops.brake, load=stops.load).item(), "Nm")
     B = Term(Variable("B"), flank_share(brake=stops.brake).item())
@@ -101,7 +101,7 @@ def _torque(sheet: CalculationSheet, stops: Stops, load: _Load, at_gear: Formula
             EquationLine(T_r, (lam * at_gear + load.T_d) / (ONE + eta * lam)),
         ]
         flank = (ONE + lam / eta) / (ONE + eta * lam)
-    f, notes = sheet.given("emergency_stop.brake.dynamic_factor"), [Sentence(BOUND)]
+    f, notes = sheet.input_of("emergency_stop.brake.dynamic_factor"), [Sentence(BOUND)]
     if f is not None:
         lines.append(EquationLine(T_k, f * T_r + (f - 1) * load.T_o))
         notes = [Sentence(TYPED_FACTOR)]
@@ -115,9 +115,10 @@ def _torque(sheet: CalculationSheet, stops: Stops, load: _Load, at_gear: Formula
 
 
 def _course(sheet: CalculationSheet, stops: Stops, J: Term, load: _Load, T_B: Term, T_k: Term) -> Step:
-    """Time, angle and energy that no stop exceeds."""
-    given, figure = sheet.given, sheet.figure
-    t_r, t_b = known(given("emergency_stop.brake.reaction_time_s")), known(given("emergency_stop.brake.rise_time_s"))
+    """Step of the upper bounds of a stop's time, angle and energy."""
+    figure = sheet.figure
+    t_r = known(sheet.input_of("emergency_stop.brake.reaction_time_s"))
+    t_b = known(sheet.input_of("emergency_stop.brake.rise_time_s"))
     K_3, j = known(sheet.rating("torsional_stiffness_Nm_per_rad")), known(sheet.rating("backlash_arcmin"))
     omega = Term(Variable("ω"), sheet.duty.stop_speed_rpm.item() * math.pi / 30, "rad_per_s")
     inertia = J + at_output(sheet)

@@ -1,6 +1,6 @@
-"""Pictures of a selection as plain data: SVG drawings, Plotly figures, and what they say in words.
+"""Pictures of a selection as plain data: SVG drawings, Plotly figures, and their contents in words.
 
-Data and axes are made here. Colours are those of a style sheet, or names of the page's theme (`var(--ink)`), which
+This package makes data and axes. Colours come from a style sheet, or are names of the page's theme (`var(--ink)`) that
 the browser fills in.
 """
 

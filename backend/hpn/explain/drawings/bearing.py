@@ -1,4 +1,6 @@
-"""Planes of the output bearing to zoom, hover and export, from the scenes of the drawings; axes fixed per size."""
+"""Interactive plots of the output bearing (zoom, hover, export) from the scenes of the drawings; axes fixed per
+size.
+"""
 
 from collections.abc import Sequence
 from html import escape
@@ -12,16 +14,16 @@ from hpn.explain.drawings.layout import LETTER, Figure, layout, points
 from hpn.explain.drawings.picture import BearingPicture, PhaseLoad
 from hpn.explain.drawings.sizes import SizeUse
 from hpn.explain.drawings.svg import Point
-from hpn.explain.drawings.words import axis_title, indexed, said, shown
+from hpn.explain.drawings.words import axis_title, indexed, numbers_in, text_of
 from hpn.words.reader import DEFAULT, Reader
 from hpn.words.terms import ENVELOPE_BASIS
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
 HALO = ", ".join(f"{x}px {y}px 1px var(--card)" for x in (-1, 1) for y in (-1, 1))
-"""Shadow that keeps a label apart from the lines behind it."""
+"""Shadow that separates a label from the lines behind it."""
 
 SPELT_OUT = 3
-"""Loads up to which the label says "phase 2" and not just "2"."""
+"""Largest number of loads with labels such as "phase 2" instead of "2"."""
 
 DASHES = {"single": "dash", "s1": "longdash", "s2": "dot", "s3": "dashdot"}
 
@@ -63,7 +65,7 @@ def _figure(scene: Scene, gear: Gear | None, picture: BearingPicture, heading: S
 
 
 def _curve(line: LimitCurve, reader: Reader) -> Figure:
-    """Curve with its name, which the page sets along the part that is in sight."""
+    """Curve with its name, which the page writes along the visible part."""
     radial, axial = zip(*line.corners, strict=True)
     kind, *states = line.kind.split()
     colour = "var(--governing)" if "governing" in states else "var(--ink)" if line.strong else "var(--muted)"
@@ -71,11 +73,11 @@ def _curve(line: LimitCurve, reader: Reader) -> Figure:
     figure: Figure = {
         "type": "scatter",
         "mode": "lines",
-        "name": indexed(line.told),
-        "x": shown(radial, "N", reader),
-        "y": shown(axial, "N", reader),
+        "name": indexed(line.full_name),
+        "x": numbers_in(radial, "N", reader),
+        "y": numbers_in(axial, "N", reader),
         "line": {"color": colour, "width": 3 if line.strong else 1.5, "dash": dash},
-        "hovertext": [f"{indexed(line.told)}<br>{_spelt(*corner, reader)}" for corner in line.corners],
+        "hovertext": [f"{indexed(line.full_name)}<br>{_spelt(*corner, reader)}" for corner in line.corners],
         "hoverinfo": "text",
         "meta": {"kind": kind, "load_coefficient": line.load_coefficient, "label": indexed(line.label), "halo": HALO},
     }
@@ -84,7 +86,7 @@ def _curve(line: LimitCurve, reader: Reader) -> Figure:
 
 def _spelt(radial_N: float, axial_N: float, reader: Reader) -> str:
     values: dict[str, Value] = {"radial": Quantity(radial_N, "N", 4), "axial": Quantity(axial_N, "N", 4)}
-    return said(Sentence("radial {radial}, axial {axial}", values), reader)
+    return text_of(Sentence("radial {radial}, axial {axial}", values), reader)
 
 
 def _distance(ray: tuple[Point, Point], reader: Reader) -> Figure:
@@ -93,8 +95,8 @@ def _distance(ray: tuple[Point, Point], reader: Reader) -> Figure:
     return {
         "type": "scatter",
         "mode": "lines",
-        "x": shown(radial, "N", reader),
-        "y": shown(axial, "N", reader),
+        "x": numbers_in(radial, "N", reader),
+        "y": numbers_in(axial, "N", reader),
         "line": {"color": "var(--muted)", "width": 1.5, "dash": "dot"},
         "hoverinfo": "skip",
         "meta": {"kind": "distance"},
@@ -107,9 +109,9 @@ def _distance(ray: tuple[Point, Point], reader: Reader) -> Figure:
 def _points(
     kind: str, symbol: str, size: int, marks: Sequence[Mark], others: Sequence[Point], reader: Reader
 ) -> Figure:
-    """Points of one kind with their labels; the phases that govern have the colour of what governs."""
+    """Points of one kind with their labels; governing phases have the governing colour."""
     spelt = kind == "load" and len(marks) <= SPELT_OUT
-    texts = [said(Sentence(N_("phase {phases}"), {"phases": m.label}), reader) if spelt else m.label for m in marks]
+    texts = [text_of(Sentence(N_("phase {phases}"), {"phases": m.label}), reader) if spelt else m.label for m in marks]
     trace = points(kind, size=size)
     states = ["governing" in mark.kind for mark in marks]
     trace["marker"] |= {
@@ -118,12 +120,12 @@ def _points(
     }
     return trace | {
         "mode": "markers+text",
-        "x": shown((mark.place[0] for mark in marks), "N", reader),
-        "y": shown((mark.place[1] for mark in marks), "N", reader),
+        "x": numbers_in((mark.place[0] for mark in marks), "N", reader),
+        "y": numbers_in((mark.place[1] for mark in marks), "N", reader),
         "text": list(map(indexed, texts)),
         "textposition": _positions([mark.place for mark in marks], others),
         "textfont": {"color": "var(--ink)", "size": LETTER, "shadow": HALO},
-        "hovertext": [indexed(escape(mark.told)) for mark in marks],
+        "hovertext": [indexed(escape(mark.full_name)) for mark in marks],
     }
 
 
@@ -131,21 +133,21 @@ _SIDES = {"top right": (1, 1), "bottom right": (1, -1), "top left": (-1, 1), "bo
 
 
 def _positions(places: Sequence[Point], others: Sequence[Point]) -> list[str]:
-    """Side of each point on which its label is furthest from the other points and labels."""
+    """Side of each point on which its label is furthest from other points and labels."""
     known = [*places, *others]
     width = max((radial for radial, _ in known), default=0.0) or 1.0
     height = max((axial for _, axial in known), default=0.0) or 1.0
-    taken = [(radial / width, axial / height) for radial, axial in known]
+    points = [(radial / width, axial / height) for radial, axial in known]
     sides = []
     for own in range(len(places)):
-        side, place = _roomiest(taken[own], [*taken[:own], *taken[own + 1 :]])
-        taken.append(place)
+        side, place = _roomiest(points[own], [*points[:own], *points[own + 1 :]])
+        points.append(place)
         sides.append(side)
     return sides
 
 
 def _roomiest(point: Point, others: Sequence[Point]) -> tuple[str, Point]:
-    """Side of a point on which there is most room, up to what a label needs, and where the label stands there."""
+    """Side of a point with the most room, up to the room that a label needs, and the place of the label there."""
     x, y = point
     offered = {side: (x + 0.05 * dx, y + 0.04 * dy) for side, (dx, dy) in _SIDES.items()}
     side = max(offered, key=lambda side: min(_room(offered[side], others), 0.12))
@@ -153,7 +155,7 @@ def _roomiest(point: Point, others: Sequence[Point]) -> tuple[str, Point]:
 
 
 def _room(place: Point, others: Sequence[Point]) -> float:
-    """Distance of a place to the nearest of some others; there is none beyond the axes."""
+    """Distance of a place to the nearest other point; negative beyond the axes."""
     if min(place) <= 0:
         return -1.0
     return min((hypot(place[0] - x, place[1] - y) for x, y in others), default=1.0)
@@ -167,13 +169,13 @@ def _layout(
         reader,
         axis_title(N_("radial load"), "N", reader),
         axis_title(N_("axial load"), "N", reader),
-        title=said(heading, reader),
+        title=text_of(heading, reader),
         note=reader.text(ENVELOPE_BASIS[load.model]),
         revision=f"{gear and gear.size} {radial:g} {axial:g}",
     )
     measure = reader.measure("N")
-    figure["xaxis"]["range"] = [0, measure.shown(radial) * 1.08]
-    figure["yaxis"]["range"] = [0, measure.shown(axial) * 1.08]
+    figure["xaxis"]["range"] = [0, measure.number(radial) * 1.08]
+    figure["yaxis"]["range"] = [0, measure.number(axial) * 1.08]
     return figure
 
 

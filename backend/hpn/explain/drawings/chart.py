@@ -1,6 +1,6 @@
 """The drawing of points within limits: loads in their envelopes, torques at their speeds.
 
-One description for every page and for the report: `chart` makes it, a style sheet gives it its colours.
+One description for every page and for the report: `chart` draws it, a style sheet colours it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,24 +22,24 @@ SMALL, LARGE, PLANE, PAPER = (348.0, 400.0), (560.0, 420.0), (400.0, 260.0), (40
 KINDS = {SMALL: "plane small", LARGE: "plane large", PLANE: "plane beside", PAPER: "plane"}
 
 TOP, RIGHT, BOTTOM, ROW = 26.0, 12.0, 38.0, 20.0
-"""Room above, beside and below the axes, and of a row of limits beyond them."""
+"""Room above, beside and below the axes, and for a row of limits beyond them."""
 
 ROOM = 1.15
-"""Axes reach this far beyond the largest value."""
+"""Reach of the axes, as a multiple of the largest value."""
 
 MOST_SPACES, GAP = 6, 8.0
-"""Most spaces between round numbers, and the least one between two of them, in units of the drawing."""
+"""Largest number of spaces between round numbers, and the least space between two numbers, in units of the drawing."""
 
 RADIUS, DOT, RING = 9.0, 2.5, 12.0
 MARGIN = 3.5
 SAME, REACH = 0.1, 130.0
-"""Loads nearer than the first are one to the eye; those beyond the second are out of reach of a disc."""
+"""Distances: loads nearer than the first look like one; loads beyond the second are out of a disc's reach."""
 
 MOST_NUMBERS = 24
-"""Phases or loads that have a numbered disc, those nearest to their limit; others are dots."""
+"""Phases or loads, at most, with numbered discs, those nearest to their limit; others are dots."""
 
 LAST = -1.0
-"""Use of a mark whose disc gives way to all others."""
+"""Value of `used` for a mark whose disc gives way to all others."""
 
 ASIDE = 10.0
 """Distance of the middle of a name from its line."""
@@ -54,7 +54,7 @@ ENDS = (0.12, 0.88, 0.16, 0.84, 0.2, 0.8, 0.08, 0.92, *ALONG)
 class ChartAxes:
     """Quantities to the right and upwards: name (an English msgid) and unit of each.
 
-    With `powers` those upwards are powers of ten.
+    With `powers` the upward axis has powers of ten.
     """
 
     across: str
@@ -71,30 +71,30 @@ LOADS = ChartAxes(N_("radial load"), "N", N_("axial load"), "N")
 class LimitCurve:
     """A limit by its corners (across, up), from one axis to the other, or a curve.
 
-    A strong one has its label in its middle and an area below it, others their label at their end; `kind` is what the
-    style sheet calls it, `told` its name in full, and `load_coefficient` that for which it holds.
+    A strong limit has its label in its middle and an area below it, others have their label at their end; `kind` is its
+    class in the style sheet, `full_name` its name in full, and `load_coefficient` its load coefficient.
     """
 
     kind: str
     label: str
     corners: Sequence[Point]
     strong: bool = False
-    told: str = ""
+    full_name: str = ""
     load_coefficient: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A load or another point: a dot at its exact place, and where it has a label, a disc with it there or beside it.
+    """A load or another point: a dot at its exact place, and for a label a disc there or beside it.
 
-    `phases` are the places of the phases marked together with it, `told` is what it is in words, `used` its share of
-    its limit.
+    `phases` are the places of the phases marked together with it, `full_name` describes it in words, `used` is its
+    share of its limit.
     """
 
     kind: str
     label: str
     place: Point
-    told: str
+    full_name: str
     used: float = 0.0
     outside: bool = False
     phases: Sequence[int] = ()
@@ -104,9 +104,9 @@ class Mark:
 class Scene:
     """Content of a plane: limits, points, and a ray.
 
-    The ray leads from the origin to its first point, and on to the limit in its direction. A lever leads from a load
-    where it acts to the load that it stands for. `beyond` are rows that name limits outside of what is drawn; a corner
-    at infinity is at the end of its axis.
+    The ray leads from the origin to its first point, and on to the limit in its direction. A lever leads from a load at
+    its own place to its equivalent. `beyond` are rows with the names of limits outside the drawing; a corner at
+    infinity is at the end of its axis.
     """
 
     lines: Sequence[LimitCurve]
@@ -119,7 +119,7 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Where points stand in a drawing of a size, whose axes end at `across` and `up`."""
+    """Places of points in a drawing of a size, whose axes end at `across` and `up`."""
 
     axes: ChartAxes
     size: Point
@@ -129,17 +129,17 @@ class Frame:
 
     @property
     def box(self) -> Rectangle:
-        """The part of the drawing between the axes."""
+        """Part of the drawing between the axes."""
         return Rectangle(self.left, TOP, self.size[0] - RIGHT, self.size[1] - BOTTOM)
 
     @property
     def room(self) -> Rectangle:
-        """The part that discs and names may use: a little beyond the axes, up to their numbers."""
+        """Part of the drawing for discs and names: a little beyond the axes, up to their numbers."""
         box = self.box
         return Rectangle(box.left - MARGIN, box.top, box.right + MARGIN, box.bottom + MARGIN)
 
     def at(self, point: Point) -> Point:
-        """Where a point stands."""
+        """Place of a point in the drawing."""
         box = self.box
         x = box.left + min(point[0] / self.across, 1.0) * (box.right - box.left)
         return x, box.bottom - min(point[1] / self.up, 1.0) * (box.bottom - box.top)
@@ -175,7 +175,7 @@ def chart(scene: Scene, reader: Reader, size: Point = SMALL) -> Element:
 
 
 def _bold(lines: Sequence[LimitCurve]) -> Iterator[tuple[Point, str]]:
-    """Ends of the lines whose values stand on the axes in bold, the governing first, with the kind of their number."""
+    """Ends of the lines with values in bold on the axes, the governing line first, with the kind of their number."""
     for kind, of_kind in (("tick own governing", True), ("tick own", False)):
         for line in lines:
             if line.label and ("governing" in line.kind) == of_kind and (of_kind or line.strong):
@@ -183,7 +183,7 @@ def _bold(lines: Sequence[LimitCurve]) -> Iterator[tuple[Point, str]]:
 
 
 def _within(frame: Frame, point: Point) -> Point:
-    """A point, or where its direction leaves the axes."""
+    """A point, or the place where its direction leaves the axes."""
     factor = max(1.0, point[0] / frame.across, point[1] / frame.up)
     return point[0] / factor, point[1] / factor
 
@@ -199,8 +199,8 @@ def _frame(points: Sequence[Point], bold: Sequence[Point], axes: ChartAxes, size
 
 
 def _numbers(largest: float, unit: str, spaces: int, reader: Reader) -> list[tuple[float, str]]:
-    """Round numbers of the reader's unit along an axis: each in the unit of the wire, and as it is written."""
-    end = reader.measure(unit).shown(largest)
+    """Round numbers of the reader's unit along an axis: each in the unit of the wire, and as written."""
+    end = reader.measure(unit).number(largest)
     return [(largest * number / end, reader.tick(number)) for number in round_numbers(0.0, end, spaces)] or [(0.0, "0")]
 
 
@@ -211,21 +211,21 @@ def _upwards(largest: float, axes: ChartAxes, reader: Reader) -> list[tuple[floa
 
 
 def _axes(drawing: Element, frame: Frame, bold: Sequence[tuple[Point, str]], reader: Reader) -> None:
-    """Both axes with titles and round numbers, and in bold the values at which the corners of a limit meet them."""
+    """Draw both axes with titles and round numbers, and in bold the values where the corners of a limit meet them."""
     box, axes = frame.box, frame.axes
     strokes = [path([(box.left, box.top), (box.left, box.bottom), (box.right, box.bottom)])]
     own = [(corner[1], reader.figure(corner[1], axes.up_unit), kind) for corner, kind in bold if corner[0] == 0]
-    taken: list[Point] = []
+    stretches: list[Point] = []
     for value, label, kind in (*own, *((*number, "tick") for number in _upwards(frame.up, axes, reader))):
         _, y = frame.at((0.0, value))
-        if _is_free(taken, y, LETTER / 2):
+        if _is_free(stretches, y, LETTER / 2):
             strokes.append(path([(box.left - 4, y), (box.left, y)]))
             text(drawing, kind, (box.left - 7, y + 4.5), label, "end")
     own = [(corner[0], reader.figure(corner[0], axes.across_unit), kind) for corner, kind in bold if corner[1] == 0]
-    taken = []
+    stretches = []
     for value, label, kind in (*own, *((*number, "tick") for number in _spread(frame, reader))):
         x, half = frame.at((value, 0.0))[0], width_of(label) / 2
-        if _is_free(taken, x, half + GAP / 2):
+        if _is_free(stretches, x, half + GAP / 2):
             strokes.append(path([(x, box.bottom), (x, box.bottom + 4)]))
             text(drawing, kind, (min(x, frame.size[0] - half), box.bottom + 18.5), label, "middle")
     add(drawing, "path", "axis", d="".join(strokes))
@@ -239,16 +239,16 @@ def _axes(drawing: Element, frame: Frame, bold: Sequence[tuple[Point, str]], rea
     )
 
 
-def _is_free(taken: list[Point], at: float, half: float) -> bool:
-    """True for a stretch about a place that is not taken yet, which it takes."""
-    if any(start < at + half and at - half < end for start, end in taken):
+def _is_free(stretches: list[Point], at: float, half: float) -> bool:
+    """True for a free stretch around a place, which is then taken."""
+    if any(start < at + half and at - half < end for start, end in stretches):
         return False
-    taken.append((at - half, at + half))
+    stretches.append((at - half, at + half))
     return True
 
 
 def _spread(frame: Frame, reader: Reader) -> list[tuple[float, str]]:
-    """Numbers of the axis to the right, as many as have room beside each other."""
+    """Numbers of the axis to the right, as many as fit beside each other."""
     for spaces in range(MOST_SPACES, 1, -1):
         numbers = _numbers(frame.across, frame.axes.across_unit, spaces, reader)
         widest = max(width_of(label) for _, label in numbers)
@@ -262,7 +262,7 @@ def _spread(frame: Frame, reader: Reader) -> list[tuple[float, str]]:
 
 
 def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: LabelRoom) -> None:
-    """Dots first, so that no disc hides one that is not its own; then the discs, the most used load first, P_m last."""
+    """Draw dots first, so that no disc hides another's dot; then the discs, the most used load first, P_m last."""
     named = sorted((place for place, mark in enumerate(marks) if mark.label), key=lambda place: -marks[place].used)
     dots = [Rectangle.around(frame.at(mark.place), 2 * DOT, 2 * DOT) for mark in marks]
     centred: list[Rectangle] = []
@@ -275,18 +275,18 @@ def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: LabelR
     for place in named:
         mark, dot = marks[place], dots[place]
         others = [other for other in dots if SAME < _apart(other, dot) < REACH]
-        taken = places.taken
-        places.taken = [*taken, *others]
+        boxes = places.boxes
+        places.boxes = [*boxes, *others]
         size = _size(mark)
         spot = places.first(around(dot.centre, *size))
-        places.taken = [*taken, *([spot] if spot else [])]
+        places.boxes = [*boxes, *([spot] if spot else [])]
         if spot and spot.centre == dot.centre:
             centred.append(dot)
         elif spot and any(_apart(other, dot) <= SAME for other in centred):
-            groups[place].remove(circles[place])  # it would lie on the number of that disc
+            groups[place].remove(circles[place])  # it would cover the number of that disc
         if spot:
             _disc(groups[place], leaders, mark, dot.centre, spot)
-    places.taken += dots
+    places.boxes += dots
 
 
 def _apart(one: Rectangle, other: Rectangle) -> float:
@@ -296,9 +296,9 @@ def _apart(one: Rectangle, other: Rectangle) -> float:
 def _group(drawing: Element, mark: Mark) -> Element:
     state = " outside" if mark.outside else ""
     group = add(drawing, "g", f"mark {mark.kind}{state}", data_phase=" ".join(map(str, mark.phases)))
-    if mark.label and mark.told:
+    if mark.label and mark.full_name:
         group.set("role", "img")
-        SubElement(group, "title").text = mark.told
+        SubElement(group, "title").text = mark.full_name
     return group
 
 
@@ -309,7 +309,7 @@ def _size(mark: Mark) -> tuple[float, float]:
 
 
 def _excess(label: str) -> float:
-    """Width of a label beyond two digits, which a disc is made for."""
+    """Width of a label beyond the two digits of a disc."""
     return max(width_of(label) - width_of("00"), 0.0)
 
 
@@ -331,7 +331,7 @@ def _disc(group: Element, leaders: Element, mark: Mark, dot: Point, spot: Rectan
 
 
 def _labels(drawing: Element, frame: Frame, lines: Sequence[LimitCurve], places: LabelRoom) -> None:
-    """Each line has its name along it, where the fewest lines cross: a strong one in its middle, others at an end."""
+    """Draw each line's name along it, where the fewest lines cross: a strong one in its middle, others at an end."""
     group = add(drawing, "g", "still", aria_hidden="true")
     for line in sorted((line for line in lines if line.label), key=lambda line: not line.strong):
         corners = [frame.at(corner) for corner in line.corners]
@@ -343,7 +343,7 @@ def _labels(drawing: Element, frame: Frame, lines: Sequence[LimitCurve], places:
 
 
 def _beside(corners: Sequence[Point], share: float, side: int, line: LimitCurve, turned: bool) -> Spot:
-    """Place of a line's name at a share of the way along it, turned with it above or below, or level beside it."""
+    """Place of a line's name at a share of the way along it, turned above or below it, or level beside it."""
     (x, y), (across, down) = _along(corners, share)
     length, half = hypot(across, down) or 1.0, width_of(line.label) / 2
     across, down = across / length, down / length
@@ -358,7 +358,7 @@ def _beside(corners: Sequence[Point], share: float, side: int, line: LimitCurve,
 
 
 def _along(corners: Sequence[Point], share: float) -> tuple[Point, Point]:
-    """Point at a share of the way along a line, by its extent across and down, and the direction there."""
+    """Point at a share of the way along a line, by its extent across and down, and the direction at that point."""
     lengths = [abs(x1 - x0) + abs(y1 - y0) for (x0, y0), (x1, y1) in pairwise(corners)]
     rest = share * sum(lengths)
     for length, (start, end) in zip(lengths, pairwise(corners), strict=True):

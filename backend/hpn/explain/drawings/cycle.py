@@ -1,6 +1,6 @@
 """The duty cycle over time, as in the handbook's illustration 17.1: steps of torque over steps of speed, and limits.
 
-A motion is drawn by its own curves.
+A motion is drawn with its own curves.
 """
 
 import math
@@ -37,12 +37,12 @@ from hpn.words.wording import N_, Quantity, Sentence, Value
 TORQUE_HEIGHT, SPEED_HEIGHT = 78.0, 56.0
 
 LEAST_WIDTH, MOST_PAUSE = 0.08, 0.35
-"""Share of the time axis that a phase takes at least, and a long pause at most."""
+"""Least share of the time axis for a phase, and largest share for a long pause."""
 
 
 @dataclass(frozen=True, slots=True)
 class CyclePicture:
-    """Drawing of a cycle over time, and the same in words; `note` says what of it is not to scale."""
+    """Drawing of a cycle over time, and the same in words; `note` names the parts that are not to scale."""
 
     drawing: Element
     words: list[Sentence]
@@ -55,12 +55,12 @@ def cycle_picture(
     reader: Reader = DEFAULT,
     governing: Sequence[int] = (),
     check: str | None = None,
-    given: Application | None = None,
+    original: Application | None = None,
 ) -> CyclePicture:
-    """Picture of the cycle of an application, beside the limits of one gear where there is one.
+    """Picture of an application's cycle, beside the limits of a gear if one is given.
 
-    The governing phases stand out, and so does the limit of the governing check. An application that is a case of one
-    with tolerances is drawn within those of the `given` one.
+    The governing phases and the governing check's limit stand out. A case of an application with tolerances is drawn
+    within the tolerances of the `original` application.
     """
     duty, cycle = subject.duty if subject else Duty.of([application]), application.duty_cycle
     torque, speed = _torque_levels(duty, subject, check), _speed_levels(duty, subject, check)
@@ -70,35 +70,35 @@ def cycle_picture(
         words = motion_words(cycle.motion, cycle.pause_s, duty)
         return CyclePicture(over_time(panels, axis, reader, governing), words, None)
     panels = [
-        _panel(N_("Torque"), TORQUE_HEIGHT, cycle, "torque_Nm", torque, given),
-        _panel(N_("Speed"), SPEED_HEIGHT, cycle, "speed_rpm", speed, given),
+        _panel(N_("Torque"), TORQUE_HEIGHT, cycle, "torque_Nm", torque, original),
+        _panel(N_("Speed"), SPEED_HEIGHT, cycle, "speed_rpm", speed, original),
     ]
     axis, note = _axis(cycle, axis_left(panels, reader))
     return CyclePicture(over_time(panels, axis, reader, governing), _in_words(cycle), note)
 
 
 def _panel(
-    quantity: str, height: float, cycle: DutyCycle, name: str, levels: Sequence[Level], given: Application | None
+    quantity: str, height: float, cycle: DutyCycle, name: str, levels: Sequence[Level], original: Application | None
 ) -> Panel:
-    """Steps of one quantity, the pause at their end, and the peaks of phases that have any."""
+    """Steps of one quantity, with the pause at the end, and the peaks of phases with any."""
     phases = cycle.load_phases
     rest = [0.0] if cycle.pause_s > 0 else []
     means = [*(getattr(phase, name) for phase in phases), *rest]
     peaks = [*_reached(phases, name), *rest]
     values, extremes = _steps(means), _steps(peaks)
-    band = [_steps([*each, *rest]) for each in zip(*_within(given, name), strict=True)] if given else []
+    band = [_steps([*each, *rest]) for each in zip(*_within(original, name), strict=True)] if original else []
     return Panel(quantity, suffix_of(name), height, values, levels, extremes if peaks != means else None, band)
 
 
 def _steps(values: Sequence[float]) -> FloatArray:
-    """Curve that keeps each value over its stretch."""
+    """Curve with a constant value over each stretch."""
     return np.repeat(np.array(values)[:, None], 2, axis=1)
 
 
-def _within(given: Application, name: str) -> list[tuple[float, float, float]]:
-    """Value of each phase as given, and the smallest and largest within its tolerance."""
-    ends = {interval.place: (interval.low, interval.high) for interval in given.intervals}
-    values = [getattr(phase, name) for phase in given.duty_cycle.load_phases]
+def _within(original: Application, name: str) -> list[tuple[float, float, float]]:
+    """Given value of each phase, and the smallest and largest within its tolerance."""
+    ends = {interval.place: (interval.low, interval.high) for interval in original.intervals}
+    values = [getattr(phase, name) for phase in original.duty_cycle.load_phases]
     return [(value, *ends.get(("phases", k, name), (value, value))) for k, value in enumerate(values)]
 
 
@@ -106,9 +106,9 @@ def _within(given: Application, name: str) -> list[tuple[float, float, float]]:
 
 
 def _axis(cycle: DutyCycle, left: float) -> tuple[TimeAxis, Sentence | None]:
-    """Places of the phases and of the pause, and a note where they are not to scale.
+    """Places of the phases and of the pause, and a note if they are not to scale.
 
-    So that a short phase beside a long one is still seen, it is drawn wider than it is.
+    A short phase beside a long one is drawn wider, so that it stays visible.
     """
     longest = max(phase.duration_s for phase in cycle.load_phases)
     durations = [phase.duration_s / longest for phase in cycle.load_phases]  # no sum overflows or vanishes
@@ -133,7 +133,7 @@ def _axis(cycle: DutyCycle, left: float) -> tuple[TimeAxis, Sentence | None]:
 
 
 def _widened(widths: list[float], least: float, room: float) -> list[float]:
-    """No width below the least one; what that takes comes off the others in proportion."""
+    """Widths raised to the least one; the others shrink in proportion."""
     short = {place for place, width in enumerate(widths) if width < least}
     while True:
         rest = sum(width for place, width in enumerate(widths) if place not in short)
@@ -154,11 +154,11 @@ _JUDGED = {
     "average_input_speed": "average_input_speed_rpm",
     "maximum_input_speed": "maximum_input_speed_rpm",
 }
-"""The level that stands for a check."""
+"""Check -> its level."""
 
 
 def _torque_levels(duty: Duty, subject: Subject | None, check: str | None) -> list[Level]:
-    """Average, and of a gear its limits and the emergency stop."""
+    """Levels of torque: the average, and a gear's limits and emergency stop."""
     levels = [Level(DUTY["average_torque_Nm"].symbol, duty.average_torque_Nm.item(), "average")]
     if subject is not None:
         for name in ("rated_torque_Nm", "repeated_peak_torque_Nm"):
@@ -169,7 +169,7 @@ def _torque_levels(duty: Duty, subject: Subject | None, check: str | None) -> li
 
 
 def _speed_levels(duty: Duty, subject: Subject | None, check: str | None) -> list[Level]:
-    """At the output: the average, and of a gear the limits of the input over the ratio."""
+    """Levels of output speed: the average, and a gear's input limits over the ratio."""
     levels = [Level(DUTY["average_output_speed_rpm"].symbol, duty.average_output_speed_rpm.item(), "average")]
     if subject is not None:
         for name in ("average_input_speed_rpm", "maximum_input_speed_rpm"):
@@ -180,7 +180,7 @@ def _speed_levels(duty: Duty, subject: Subject | None, check: str | None) -> lis
 
 
 def _known(symbol: str, value: float | None, kind: str, name: str, check: str | None) -> list[Level]:
-    """Level whose value is there; the one that stands for the check stands out."""
+    """Level if its value is known; the level of the governing check stands out."""
     state = " governing" if check and _JUDGED.get(check) == name else ""
     return [] if value is None else [Level(symbol, value, kind + state)]
 
@@ -189,7 +189,7 @@ def _known(symbol: str, value: float | None, kind: str, name: str, check: str | 
 
 
 def _in_words(cycle: DutyCycle) -> list[Sentence]:
-    """The cycle from end to end, with the peaks of its phases; what comes out of a motion with the digits of a page."""
+    """The cycle in words, with the peaks of its phases; figures from a motion have the digits of a page."""
     phases, pause_s = cycle.load_phases, cycle.pause_s
     count, digits = len(phases), 6 if cycle.motion is None else DEFAULT.digits
     torques, speeds = (_reached(phases, name) for name in ("torque_Nm", "speed_rpm"))
@@ -203,7 +203,7 @@ def _in_words(cycle: DutyCycle) -> list[Sentence]:
 
 
 def _reached(phases: Sequence[Phase], name: str) -> list[float]:
-    """The peaks of phases, each with the sign of its mean; the mean itself where a phase is steady."""
+    """Peaks of phases, each with the sign of its mean; the mean itself for a steady phase."""
     means = [getattr(phase, name) for phase in phases]
     peaks = [getattr(phase, f"peak_{name}") for phase in phases]
     return [mean if peak is None else math.copysign(peak, mean) for mean, peak in zip(means, peaks, strict=True)]

@@ -19,7 +19,7 @@ from hpn.words.wording import N_, Quantity, Sentence, Value
 def envelope_scene(
     picture: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = (), check: str | None = None
 ) -> Scene:
-    """Envelopes and loads of one gear; the `governing` phases and the limit of the governing check stand out."""
+    """Envelopes and loads of one gear; the `governing` phases and the governing check's limit stand out."""
     accent = {check: " governing"}
     lines = []
     for named in picture.named_curves:
@@ -33,7 +33,7 @@ def envelope_scene(
         if named.kind == "published" and not (picture.life_factor < 1 and picture.loads):
             continue
         if kind:
-            text, strong = reader.told(named.name), named.kind == "own"
+            text, strong = reader.sentence(named.name), named.kind == "own"
             lines.append(LimitCurve(kind, label, named.corners, strong, text, named.curve.load_coefficient))
     if not picture.loads:
         return Scene(lines, [])
@@ -61,9 +61,9 @@ def sizes_scene(
 
 @dataclass(frozen=True, slots=True)
 class GearEnvelope:
-    """Envelopes of a gear for f_w = 1, 1.2, 1.5 and the one asked for, and the largest single load.
+    """Envelopes of a gear for f_w = 1, 1.2, 1.5 and the requested one, and the largest single load.
 
-    `supplied` tells whether they follow points of a supplement.
+    `supplied` is True if they follow points of a supplement.
     """
 
     curves: list[EnvelopeCurve]
@@ -72,7 +72,7 @@ class GearEnvelope:
 
 
 def published_condition(catalogue: Catalogue, gear: Gear) -> EnvelopeQuery:
-    """Condition that the published limits hold for, with the model that follows a gear's curve where it is known."""
+    """Condition of the published limits, with the digitised model where the gear's curve is known."""
     speed, life = catalogue.bearing_reference
     return EnvelopeQuery(speed_rpm=speed, life_h=life, model="digitised" if gear.size in catalogue.curves else "linear")
 
@@ -80,7 +80,7 @@ def published_condition(catalogue: Catalogue, gear: Gear) -> EnvelopeQuery:
 def gear_envelope(
     catalogue: Catalogue, gear: Gear, query: EnvelopeQuery, reader: Reader = DEFAULT
 ) -> GearEnvelope | None:
-    """Envelopes of a gear at a speed and life, or None where its limits are not published."""
+    """Envelopes of a gear at a speed and life, or None if its limits are not published."""
     if not has_envelope(catalogue, gear, query.model):
         return None
     curves = life_envelopes(catalogue, gear, query)
@@ -106,7 +106,7 @@ def _corners(curve: EnvelopeCurve) -> list[Point]:
 
 
 def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *, judged: bool) -> list[Mark]:
-    """The loads, of which those nearest to their limit are numbered; `judged`: by the limit of the picture's gear."""
+    """The loads, numbered if near to their limit; with `judged` by the limit of the picture's gear."""
     order = sorted(range(len(picture.loads)), key=lambda place: -picture.loads[place].published)
     numbered = set(order[:MOST_NUMBERS])
     marks = []
@@ -121,7 +121,7 @@ def _marks(picture: BearingPicture, governing: Sequence[int], reader: Reader, *,
 
 
 def _levers(picture: BearingPicture) -> list[tuple[Point, Point]]:
-    """Lines from the loads where they act to those at the shaft's centre."""
+    """Lines from loads at their own places to their equivalents at the shaft's centre."""
     return [((load.given_N, load.axial_N), (load.radial_N, load.axial_N)) for load in picture.loads if load.has_lever]
 
 
@@ -134,9 +134,9 @@ def _told_of(load: PhaseLoad, outside: bool, reader: Reader) -> str:
     }
     if load.has_lever:
         term = {"given": Quantity(load.given_N, "N", 4)}
-        text = reader.told(Sentence(LEVER, values | term))
+        text = reader.sentence(Sentence(LEVER, values | term))
     else:
-        text = reader.told(
+        text = reader.sentence(
             Sentence("Phase {phases}: radial {radial}, axial {axial}, {used} of the published maximum", values)
         )
     return f"{text}, {reader.text(N_('outside the limit'))}" if outside else text
@@ -150,7 +150,7 @@ LEVER = N_(
 
 def _equivalent(picture: BearingPicture, reader: Reader) -> Mark:
     outside = beyond_limit(picture.constant_load_utilisation, picture.allowed)
-    text = reader.told(
+    text = reader.sentence(
         Sentence(
             "Equivalent load of the cycle: {used} of the permissible constant load",
             {"used": share(picture.constant_load_utilisation, picture.allowed)},

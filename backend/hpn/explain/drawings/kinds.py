@@ -10,14 +10,14 @@ from hpn.words.wording import N_
 WIDTH, HEIGHT = 296.0, 180.0
 LEFT, RIGHT, TOP, BOTTOM = 12.0, 18.0, 42.0, 36.0
 MOST_STEPS, APART = 8, 46.0
-"""Numbers on the axis, and room that the mass beside a point needs."""
+"""Numbers on the axis, at most, and room for the mass beside a point."""
 
 STEEP = 3.0
-"""Masses above so many times the least are left out of the scale, and said above it."""
+"""Ratio to the least mass above which a mass lies outside the scale and is written above it."""
 
 
 def kinds_curve(steps: Sequence[tuple[int, float]], reader: Reader = DEFAULT) -> Element | None:
-    """Curve of mass in kg over numbers of kinds, the present one last; None with fewer than two."""
+    """Curve of mass in kg over numbers of kinds, the present number last; None with fewer than two."""
     places = sorted(steps)[-MOST_STEPS:]
     if len(places) < 2:
         return None
@@ -46,8 +46,8 @@ def kinds_curve(steps: Sequence[tuple[int, float]], reader: Reader = DEFAULT) ->
             add(drawing, "circle", "disc now" if is_now else "disc", cx=x, cy=y, r=4.0)
         if is_now or written_at - x >= APART:
             label = reader.exact(round(mass, 1))
-            said, height = (label, y) if is_inside else (f"↑ {label}", TOP)
-            text(drawing, "phase", (WIDTH if is_now else x + 4, height - 9), said, "end" if is_now else "start")
+            mark, height = (label, y) if is_inside else (f"↑ {label}", TOP)
+            text(drawing, "phase", (WIDTH if is_now else x + 4, height - 9), mark, "end" if is_now else "start")
             written_at = WIDTH - APART + 4 if is_now else x + 4
     text(drawing, "title", (0, 12), reader.unit("kg"))
     text(drawing, "title", (WIDTH, HEIGHT - 1), reader.text(N_("kinds")), "end")

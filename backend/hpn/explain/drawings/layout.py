@@ -1,4 +1,4 @@
-"""The parts of a Plotly layout that all plots share."""
+"""Parts of a Plotly layout that all plots share."""
 
 from typing import Any
 
@@ -23,7 +23,7 @@ _AXIS = {
 
 
 def layout(reader: Reader, x: str, y: str, *, title: str, note: str = "", revision: str = "") -> Figure:
-    """Layout of a plot. `title` and `note` stand on what is saved as a picture, where the page is not around it."""
+    """Layout of a plot. `title` and `note` appear on a saved picture, which has no page around it."""
     return {
         "xaxis": {**_AXIS, "title": {"text": x, "standoff": 10, "font": {"size": LETTER}}},
         "yaxis": {**_AXIS, "title": {"text": y, "standoff": 12, "font": {"size": LETTER}}, "automargin": True},
@@ -41,7 +41,7 @@ def layout(reader: Reader, x: str, y: str, *, title: str, note: str = "", revisi
 
 
 def points(kind: str, *, size: int, colour: str = "var(--ink)") -> Figure:
-    """Trace of points as diamonds, to which their places and texts are added."""
+    """Trace of points as diamonds, without places and texts yet."""
     return {
         "type": "scatter",
         "cliponaxis": False,

@@ -16,7 +16,7 @@ from hpn.words.wording import N_, Quantity, Sentence, Value
 WAY_HEIGHT, SPEED_HEIGHT, TORQUE_HEIGHT = 50.0, 60.0, 74.0
 
 MOST_PAUSE, LEAST_PAUSE = 0.25, 0.06
-"""Share of the width that a pause takes at most, and at least."""
+"""Largest and smallest share of the width for a pause."""
 
 
 def motion_over_time(
@@ -60,13 +60,13 @@ def _axis(course: Course, trace: Trace, pause_s: float, left: float, reader: Rea
 
 
 def _end_of_motion(left: float, motion_s: float, pause_s: float) -> float:
-    """Where the motion ends and the pause begins; a long pause is drawn shorter than it is."""
+    """Place where the motion ends and the pause begins; a long pause is drawn shorter than to scale."""
     share = pause_s / (motion_s + pause_s)
     return RIGHT - (RIGHT - left) * (min(max(share, LEAST_PAUSE), MOST_PAUSE) if pause_s else 0.0)
 
 
 def motion_words(motion: Motion, pause_s: float, duty: Duty) -> list[Sentence]:
-    """The same in words."""
+    """A motion in words."""
     trace = trace_of(duty.courses[0])
     values: dict[str, Value] = {
         "time": Quantity(trace.time_s.item(-1), "s"),

@@ -1,4 +1,4 @@
-"""Values over time as one drawing: panels above each other on one time axis, limits named at the right."""
+"""Values over time as one drawing: panels above each other on one time axis, with the names of limits at the right."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,36 +14,39 @@ from hpn.physics.equations import FloatArray
 from hpn.words.reader import Reader
 
 WIDTH, RIGHT = 344.0, 234.0
-"""Width of the drawing, and the end of its time axis: names of limits stand to the right of it."""
+"""Width of the drawing, and right end of its time axis: names of limits stand beyond it."""
 
 LETTER, TITLE, ROW, BETWEEN = 13.0, 19.0, 25.0, 8.0
-"""Least distance of two texts below each other, and heights of a title, of the numbers of phases, and of a gap."""
+"""Least distance of two texts below each other, and heights of a title, of the row of phase numbers, and of a gap."""
 
 RADIUS, APART, SHIFTS = 9.0, 18.0, (0.0, 2.0, -2.0, 4.0, -4.0, 6.0, -6.0, 8.0)
-"""Radius of the number of a phase, the least distance of two, and how far each may stand off its phase's middle."""
+"""Radius of a phase number's disc, the least distance of two, and possible shifts from the phase's middle."""
 
 CAPITAL = 9.0
 """Height of a figure."""
 
+NAME = LETTER + 3
+"""Least distance of the names of two levels: an index reaches below its line."""
+
 NAMED_LETTERS = 14.8
-"""Letters of a limit and its value that have room at the right; those of an index count four fifths."""
+"""Letters of a limit and its value that fit at the right; those of an index count four fifths."""
 
 SMALLER = 0.82
-"""Size of the letters here, as a share of those that `width_of` has room for."""
+"""Letter size here, as a share of the size that `width_of` assumes."""
 
 HEADROOM, OUT_OF_SCALE = 1.08, 2.2
-"""Reach of an axis beyond its values, and multiple of them beyond which a limit is only named, with an arrow."""
+"""Reach of an axis beyond its values, and multiple of the values beyond which a limit is only named, with an arrow."""
 
 MOST_BOUNDARIES = 24
-"""Stretches of time up to which each has its number, and a line where it begins."""
+"""Largest number of stretches of time with a number each, and a line at each start."""
 
 STRAIGHT = 0.05
-"""Units of the drawing by which a piece may leave the line between its ends and still be drawn as that line."""
+"""Deviation, in units of the drawing, up to which a piece is drawn as a straight line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A limit or an average to compare a curve with; `kind` is what the style sheet calls it."""
+    """A limit or an average to compare a curve with; `kind` is its class in the style sheet."""
 
     symbol: str
     value: float
@@ -52,10 +55,9 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One diagram: a curve of values, shape (pieces, instants), with the peaks that each piece reaches beyond them.
+    """One diagram: a curve of values, shape (pieces, instants), and the peaks of each piece beyond them.
 
-    `band` has the values as given, and the smallest and largest within their tolerance, where the curve is a case of
-    these.
+    For a case within tolerances, `band` has the given values, and the smallest and largest within their tolerance.
     """
 
     quantity: str
@@ -75,7 +77,7 @@ class Panel:
 
     @cached_property
     def range(self) -> Point:
-        """From the smallest to the largest value, and the levels that are near them."""
+        """Ends of the axis: the smallest and the largest value, levels near to them included."""
         low, high = self.extremes
         reach = max(-low, high) * OUT_OF_SCALE
         high = max(high, *(level.value for level in self.levels if level.value <= reach), 0.0)
@@ -88,7 +90,7 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A part of the time axis in units of the drawing, the phases that it holds, and their name where there is one."""
+    """A part of the time axis in units of the drawing, its phases, and their name, if any."""
 
     start: float
     end: float
@@ -105,7 +107,7 @@ class Stretch:
 class TimeAxis:
     """The time axis: places of all instants, stretches of phases, stretches with a number, and the pause.
 
-    `times` are numbers along the axis by their places; `row` is the panel that the numbers stand below.
+    `times` are numbers along the axis by their places; `row` is the panel above the phase numbers.
     """
 
     x: FloatArray
@@ -117,12 +119,12 @@ class TimeAxis:
 
 
 def axis_left(panels: Sequence[Panel], reader: Reader) -> float:
-    """Left end of the time axis, so that the numbers of all panels have room beside it."""
+    """Left end of the time axis, with room for the numbers of all panels beside it."""
     return 8 + SMALLER * max(width_of(_figure(value, panel, reader)) for panel in panels for value in _ticks(panel))
 
 
 def over_time(panels: Sequence[Panel], axis: TimeAxis, reader: Reader, governing: Sequence[int] = ()) -> Element:
-    """Drawing of panels on one time axis; the phases that govern stand out."""
+    """Drawing of panels on one time axis; governing phases stand out."""
     tops = _tops(panels, axis, reader)
     bottom = tops[-1] + panels[-1].height
     drawing = canvas("over-time", WIDTH, bottom + (ROW if axis.row == len(panels) - 1 else 0.0) + 8)
@@ -134,7 +136,7 @@ def over_time(panels: Sequence[Panel], axis: TimeAxis, reader: Reader, governing
 
 
 def _tops(panels: Sequence[Panel], axis: TimeAxis, reader: Reader) -> list[float]:
-    """Upper end of each panel, below its title and the row of what is beyond its scale."""
+    """Upper end of each panel, below its title and the row of levels beyond its scale."""
     tops, y = [], 0.0
     for place, panel in enumerate(panels):
         y += TITLE + (LETTER if _is_crowded(panel, reader) else 0.0)
@@ -144,13 +146,13 @@ def _tops(panels: Sequence[Panel], axis: TimeAxis, reader: Reader) -> list[float
 
 
 def _is_crowded(panel: Panel, reader: Reader) -> bool:
-    """True where the title leaves what is beyond the scale no room beside it."""
+    """True if the title leaves no room beside it for levels beyond the scale."""
     names = "  ".join(f"↑ {_named(level, panel, reader)}" for level in panel.levels if panel.is_beyond(level))
     return bool(names) and SMALLER * width_of(axis_title(panel.quantity, panel.unit, reader) + names) > WIDTH
 
 
 def _stretches(drawing: Element, axis: TimeAxis, span: Point, governing: Sequence[int]) -> None:
-    """The pause and the phases across all panels, and lines where what has a number begins."""
+    """Draw the pause and the phases across all panels, and lines at the start of numbered stretches."""
     top, height = span[0], span[1] - span[0]
     if axis.pause:
         across = {"x": axis.pause.start, "width": axis.pause.end - axis.pause.start}
@@ -186,9 +188,9 @@ def _panel(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: R
     add(drawing, "path", "area", d=path(outline, closed=True))
     add(drawing, "path", "zero", d=path([(left, zero), (RIGHT, zero)]))
     if panel.band:
-        given, *ends = (_thinned(x, _heights(panel, top, each)) for each in panel.band)
+        nominal, *ends = (_thinned(x, _heights(panel, top, each)) for each in panel.band)
         add(drawing, "path", "band", d=path([*ends[0], *reversed(ends[1])], closed=True))
-        add(drawing, "path", "given", d=path(given))
+        add(drawing, "path", "given", d=path(nominal))
     if panel.peaks is not None:
         add(drawing, "path", "peaks", d=path(_thinned(x, _heights(panel, top, panel.peaks))))
     add(drawing, "path", "steps worst" if panel.band else "steps", d=path(outline))
@@ -203,7 +205,7 @@ def _heights(panel: Panel, top: float, values: FloatArray) -> FloatArray:
 
 
 def _ticks(panel: Panel) -> list[float]:
-    """The peaks and 0, as many as have room: the largest first, then 0."""
+    """Peaks and 0, as many as fit: the largest first, then 0."""
     low, high = panel.range if panel.extremes == (0.0, 0.0) else panel.extremes
     apart = LETTER / panel.height * HEADROOM * (panel.range[1] - panel.range[0])
     ticks = list[float]()
@@ -214,20 +216,20 @@ def _ticks(panel: Panel) -> list[float]:
 
 
 def _figure(value: float, panel: Panel, reader: Reader) -> str:
-    """A value as it stands on an axis or at its step."""
-    number = reader.measure(panel.unit).shown(value)
+    """A value as written on an axis or at its step."""
+    number = reader.measure(panel.unit).number(value)
     return reader.figure(value, panel.unit) if 1e-3 <= abs(number) < 1e6 else reader.tick(number)
 
 
 def _peaks(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: Reader) -> None:
-    """Peaks that the axis does not name, at their place of the curve: none over a level or over one another."""
+    """Draw peaks that the axis does not name at their places of the curve, clear of levels and of one another."""
     if len(axis.numbered) > MOST_BOUNDARIES:
         return
     peaks = [_peak(panel, axis.x, stretch) for stretch in axis.numbered]
     levels = [level.value for level in panel.levels if not panel.is_beyond(level)]
     lines = _heights(panel, top, np.array([0.0, *levels])).tolist()
     named = {_figure(value, panel, reader) for value in _ticks(panel)}
-    taken = axis.x.item(0) + 1
+    end = axis.x.item(0) + 1
     for k, (x, value) in enumerate(peaks):
         beside = [other for _, other in (*peaks[max(k - 1, 0) : k], *peaks[k + 1 : k + 2]) if other * value > 0]
         label = _figure(value, panel, reader)
@@ -235,13 +237,13 @@ def _peaks(drawing: Element, panel: Panel, top: float, axis: TimeAxis, reader: R
         baseline = _baseline(_heights(panel, top, np.array([value])).item(), value, (top, top + panel.height), lines)
         if label in named or any(abs(other) >= abs(value) for other in beside) or baseline is None:
             continue
-        if taken <= x - half and x + half <= RIGHT + 4:
+        if end <= x - half and x + half <= RIGHT + 4:
             text(drawing, "peak", (x, baseline), label, "middle")
-            taken = x + half + 4
+            end = x + half + 4
 
 
 def _peak(panel: Panel, x: FloatArray, stretch: Stretch) -> Point:
-    """Place and value of the peak of a stretch; the middle of those that are alike."""
+    """Place and value of a stretch's peak; the middle of equal peaks."""
     values = panel.values if panel.peaks is None else panel.peaks
     own = (stretch.start <= x.mean(axis=1)) & (x.mean(axis=1) <= stretch.end)
     sizes = np.abs(values[own])
@@ -250,7 +252,7 @@ def _peak(panel: Panel, x: FloatArray, stretch: Stretch) -> Point:
 
 
 def _baseline(at: float, value: float, ends: Point, lines: Sequence[float]) -> float | None:
-    """Baseline of the figure of a peak: beyond the curve, within its panel, and over no line."""
+    """Baseline of a peak's figure: beyond the curve, within its panel, and clear of all lines; None without one."""
     baseline = at - 4 if value > 0 else at + 4 + CAPITAL
     inside = ends[0] - 1 <= baseline - CAPITAL and baseline <= ends[1] + 2
     clear = all(line <= baseline - CAPITAL - 1 or baseline + 1 <= line for line in lines)
@@ -262,7 +264,9 @@ def _named(level: Level, panel: Panel, reader: Reader) -> str:
 
 
 def _levels(drawing: Element, panel: Panel, top: float, left: float, reader: Reader) -> None:
-    """Levels as lines with their names at the right, none over another; those beyond the scale in the title's line."""
+    """Draw levels as lines with their names at the right, clear of one another; levels beyond the scale in the title's
+    line.
+    """
     levels = sorted(panel.levels, key=lambda level: -level.value)
     inside = [level for level in levels if not panel.is_beyond(level)]
     lines = _heights(panel, top, np.array([level.value for level in inside])).tolist()
@@ -279,18 +283,18 @@ def _levels(drawing: Element, panel: Panel, top: float, left: float, reader: Rea
 
 
 def _spread(lines: Sequence[float], first: float, last: float) -> list[float]:
-    """Baselines of names as near to their lines as their letters allow, between the first and the last that may be."""
+    """Baselines of names as near to their lines as the letters permit, between `first` and `last`."""
     places: list[float] = []
     for line in lines:
-        places.append(max(line + 4, places[-1] + LETTER if places else first))
+        places.append(max(line + 4, places[-1] + NAME if places else first))
     for k in reversed(range(len(places))):
         places[k] = last = min(places[k], last)
-        last -= LETTER
+        last -= NAME
     return places
 
 
 def _thinned(x: FloatArray, y: FloatArray) -> list[Point]:
-    """Points of a curve: both ends of every piece, and what is between them where it is not straight."""
+    """Points of a curve: both ends of every piece, and the points between them unless they lie on a straight line."""
     share = (x - x[:, :1]) / np.where(x[:, -1:] > x[:, :1], x[:, -1:] - x[:, :1], 1.0)
     bent = (np.abs(y[:, :1] + share * (y[:, -1:] - y[:, :1]) - y) > STRAIGHT).any(axis=1)
     mask = np.zeros(x.shape, np.bool_)
@@ -303,7 +307,7 @@ def _thinned(x: FloatArray, y: FloatArray) -> list[Point]:
 
 
 def _extremes(x: FloatArray, y: FloatArray) -> np.ndarray:
-    """True for the first, last, lowest and highest point in each slice of width 1: a line shows no others."""
+    """True for the first, last, lowest and highest point in each slice of width 1: no others are visible in a line."""
     slices, heights = x.ravel().astype(np.intp), y.ravel()
     mask = np.zeros(len(heights), np.bool_)
     starts = np.flatnonzero(np.diff(slices, prepend=-1))
@@ -317,13 +321,13 @@ def _extremes(x: FloatArray, y: FloatArray) -> np.ndarray:
 
 
 def _numbers(drawing: Element, axis: TimeAxis, y: float, governing: Sequence[int]) -> None:
-    """Numbers of what has one, the pause's name, and times: none over another, the first of these going first."""
-    taken: list[Point] = []
+    """Draw numbers of stretches, the pause's name, and times, clear of one another, in this order of priority."""
+    stretches: list[Point] = []
 
     def first_free(half: float, *places: float) -> float | None:
-        free = (x for x in places if all(end <= x - half or x + half <= start for start, end in taken))
+        free = (x for x in places if all(end <= x - half or x + half <= start for start, end in stretches))
         if (place := next(free, None)) is not None:
-            taken.append((place - half, place + half))
+            stretches.append((place - half, place + half))
         return place
 
     def put(kind: str, label: str, half: float, *places: float) -> None:
@@ -348,7 +352,7 @@ def _numbers(drawing: Element, axis: TimeAxis, y: float, governing: Sequence[int
 
 
 def _number(drawing: Element, stretch: Stretch, number: int, at: Point, governing: Sequence[int]) -> None:
-    """Number of a stretch in a disc, with its name beside it where both have room."""
+    """Draw the number of a stretch in a disc, with its name beside it if both fit."""
     state = " governing" if set(stretch.phases) & set(governing) else ""
     group = add(drawing, "g", f"mark{state}", data_phase=_of(stretch))
     needed = 2 * RADIUS + 4 + SMALLER * width_of(stretch.name)

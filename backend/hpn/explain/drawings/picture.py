@@ -1,4 +1,4 @@
-"""Loads of one application on an output bearing: what drawing, plot, table and verdict are made from."""
+"""Loads of one application on an output bearing: the data of drawing, plot, table and verdict."""
 
 import math
 from collections.abc import Sequence
@@ -20,18 +20,18 @@ from hpn.words.titles import numbered
 from hpn.words.wording import Quantity, Sentence, Value
 
 MOST_LOADS = 200
-"""Different loads that plot and table show; of more, those that use the published maximum most."""
+"""Different loads, at most, in plot and table; of more, those that use the published maximum most."""
 
 
 MOST_MARKED = 100
-"""Phases from the first on that have a row of their own on a page, so that a load can be marked together with them."""
+"""First phases, at most, with their own rows on a page, so that a load can be marked together with them."""
 
 
 @dataclass(frozen=True, slots=True)
 class PhaseLoad:
-    """One load in N, the phases that have it, and its f_w P, which may be `allowed`; the published envelope is 1.
+    """One load in N, its phases, and its f_w P, which `allowed` limits; the published envelope is 1.
 
-    `radial_N` is that at the shaft's centre; `given_N` acts where it is said to.
+    `radial_N` acts at the shaft's centre; `given_N` is the given load at its own place.
     """
 
     places: list[int]
@@ -44,17 +44,17 @@ class PhaseLoad:
 
     @property
     def has_lever(self) -> bool:
-        """True for a load that acts beside the shaft's centre and counts as another there."""
+        """True for a load beside the shaft's centre, with a different equivalent there."""
         return self.given_N != self.radial_N
 
     @property
     def phases(self) -> str:
-        """Numbers of the phases as a reader counts them."""
+        """Numbers of the phases, counted from 1."""
         return phase_numbers(self.places)
 
     @property
     def spoken(self) -> str:
-        """The same in a sentence: of one phase with its name."""
+        """Numbers of the phases for a sentence; a single phase with its name."""
         return self.phases if len(self.places) > 1 else numbered(self.places[0], self.name)
 
     @property
@@ -74,12 +74,12 @@ class PhaseLoad:
 
     @property
     def distance_N(self) -> float | None:
-        """From the load to that limit; negative beyond it."""
+        """Distance from the load to this limit; negative beyond it."""
         return None if self.limit_N is None else self.limit_N - self.magnitude_N
 
     @property
     def is_outside(self) -> bool:
-        """True for more than a single load may be."""
+        """True for a load above the limit of a single load."""
         return beyond_limit(self.published, self.allowed)
 
 
@@ -88,7 +88,7 @@ CurveKind = Literal["own", "life", "published", "equivalent"]
 
 @dataclass(frozen=True, slots=True)
 class NamedCurve:
-    """One curve of the picture, and the condition that it stands for; `kind` tells the curves apart in the figure."""
+    """One curve of the picture, and its condition; `kind` tells the curves apart in the figure."""
 
     kind: CurveKind
     name: Sentence
@@ -102,11 +102,11 @@ class NamedCurve:
 
 @dataclass(frozen=True, slots=True)
 class BearingPicture:
-    """Loads permitted on the output bearing of one gear at the speed and life of an application, and its own loads.
+    """Permissible loads on the output bearing of one gear at the speed and life of an application, and its own loads.
 
-    `mean` is P_m without f_w, `life_factor` the k that speed and required life allow, `allowed` the user's u, which
-    every curve but the equivalent load's is scaled by. `loads` are in the order of the phases, and `hidden` is the
-    number of those left out. Without a load `loads` is empty, and `load` holds the conditions that count by default.
+    `mean` is P_m without f_w, `life_factor` the k for speed and required life, `allowed` the user's u, which scales
+    every curve except the equivalent load's. `loads` are in the order of the phases, and `hidden` is the number of
+    omitted ones. Without a load `loads` is empty, and `load` holds the default conditions.
     """
 
     gear: Gear
@@ -123,7 +123,7 @@ class BearingPicture:
 
     @property
     def worst(self) -> PhaseLoad:
-        """The load that uses the published envelope most, where there are loads."""
+        """The load that uses the published envelope most; there must be loads."""
         return max(self.loads, key=lambda load: load.published)
 
     @property
@@ -135,12 +135,12 @@ class BearingPicture:
 
     @property
     def life_utilisation(self) -> float:
-        """Equivalent load over what its life allows: f_w P_m over k."""
+        """Equivalent load over the load that the required life permits: f_w P_m over k."""
         return self.mean * self.load.load_coefficient / self.life_factor
 
     @property
     def constant_load_utilisation(self) -> float:
-        """Share of what a constant load may be: f_w P_m over min(1, k)."""
+        """Equivalent load over the permissible constant load: f_w P_m over min(1, k)."""
         return self.mean * self.load.load_coefficient / min(1.0, self.life_factor)
 
     @property
@@ -151,7 +151,7 @@ class BearingPicture:
 
     @property
     def life_governs(self) -> bool:
-        """True where the life of the cycle is nearer to its limit than the largest single load."""
+        """True if the cycle's life is nearer to its limit than the largest single load."""
         return self.life_factor < 1 and self.life_utilisation >= self.worst.published
 
     @property
@@ -175,7 +175,7 @@ class BearingPicture:
 
     @property
     def condition(self) -> Sentence:
-        """Speed and life that the curves hold for, and the user's u where it is below 1."""
+        """Speed and life of the curves, and the user's u if below 1."""
         values: dict[str, Value] = {
             "speed": Quantity(self.average_output_speed_rpm, "rpm"),
             "life": Quantity(self.load.life_h, "h", 6),
@@ -193,7 +193,7 @@ def _coefficient(curve: EnvelopeCurve) -> dict[str, Value]:
 
 
 def beyond_limit(utilisation: float, allowed: float) -> bool:
-    """True for a utilisation above the allowed one, floating-point rounding apart."""
+    """True for a utilisation above the allowed one by more than rounding."""
     return utilisation > allowed * (1 + ROUNDING)
 
 
@@ -204,17 +204,18 @@ def bearing_picture(
     *,
     without_lever: bool = False,
 ) -> BearingPicture | None:
-    """Picture of the bearing of a gear, or None where its size has no envelope or its loads are not rated.
+    """Picture of a gear's bearing, or None if its size has no envelope or its loads are not rated.
 
-    `life` is the check of the bearing's life, just made or saved: it compares f_w P_m and k. Without a load it holds
-    for a `condition`, or for the cycle's speed and the life that counts by default. `without_lever` shows loads whose
-    lever is not known where they act.
+    `life` is the check of the bearing's life, new or saved: it compares f_w P_m and k. Without a load the picture is
+    for a `condition`, or for the cycle's speed and the default life. `without_lever` shows loads with an unknown lever
+    at their own places.
     """
     application, catalogue, gear = subject.application, subject.catalogue, subject.gear
     load, allowed = application.loads or OutputLoad(), application.requirements.utilisation
     speed_rpm = subject.duty.average_output_speed_rpm.item()
     if application.loads is None and condition is not None:
-        load, speed_rpm = _load_of(condition), condition.speed_rpm
+        load = OutputLoad(load_coefficient=condition.load_coefficient, life_h=condition.life_h, model=condition.model)
+        speed_rpm = condition.speed_rpm
     if not has_envelope(catalogue, gear, load.model):
         return None
     loads: list[PhaseLoad] = []
@@ -241,7 +242,7 @@ def bearing_picture(
 
 
 def _demand_of(life: CheckResult | None, *, without_lever: bool) -> float | None:
-    """Equivalent load f_w P_m of a check of the bearing's life; without its lever the least that it may be."""
+    """Equivalent load f_w P_m of a check of the bearing's life; without its lever the lower bound."""
     if life is None or not without_lever:
         return None if life is None else life.demand
     return None if life.at_least is None or life.limit is None else life.at_least * life.limit
@@ -257,17 +258,15 @@ def _loads_of(subject: Subject, *, without_lever: bool) -> list[PhaseLoad]:
 
 
 def default_condition(subject: Subject) -> EnvelopeQuery:
-    """Condition of what a shaft may carry where no load is given: the speed of the cycle and the life by default."""
+    """Default condition of a shaft's permissible loads without given loads: the speed of the cycle and the default
+    life.
+    """
     load = OutputLoad()
     return EnvelopeQuery(speed_rpm=subject.duty.average_output_speed_rpm.item(), life_h=load.life_h, model=load.model)
 
 
-def _load_of(condition: EnvelopeQuery) -> OutputLoad:
-    return OutputLoad(load_coefficient=condition.load_coefficient, life_h=condition.life_h, model=condition.model)
-
-
 def _life_factor(catalogue: Catalogue, load: OutputLoad, speed_rpm: float) -> float:
-    """k of an application: what speed and required life make of the published limits."""
+    """Factor k of an application on the published limits, from speed and required life."""
     speed, life = catalogue.bearing_reference
     k = bearing.life_factor(
         average_output_speed_rpm=speed_rpm,
@@ -285,9 +284,9 @@ def different_loads(
     allowed: float,
     names: Sequence[str | None],
 ) -> list[PhaseLoad]:
-    """Different loads of a cycle, in the order in which they first occur.
+    """Different loads of a cycle, in the order of their first occurrence.
 
-    Of each phase `radial_N` is the radial load at the shaft's centre, and `published` its f_w P.
+    For each phase `radial_N` is the radial load at the shaft's centre, and `published` its f_w P.
     """
     loads: dict[tuple[float, float], PhaseLoad] = {}
     series = (radial_N, duty.phases.axial_N[0, 0].tolist(), published, duty.phases.radial_N[0, 0].tolist())

@@ -1,4 +1,4 @@
-"""Pictures of a candidate in the language and units of a reader, for the page and the report."""
+"""Pictures of a candidate in a reader's language and units, for the page and the report."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -28,11 +28,11 @@ _EXTREME = {
     "maximum_input_speed": "peak_speed_rpm",
     "motor_speed": "peak_speed_rpm",
 }
-"""Checks of the largest value of a phase."""
+"""Checks of a phase's largest value -> that value."""
 
 
 def governing_phases(subject: Subject, check: str | None, picture: BearingPicture | None) -> tuple[int, ...]:
-    """Places of the phases that a check goes by; none where it goes by an average, a stop or a property."""
+    """Places of the phases that determine a check; empty for an average, a stop or a property."""
     if check in ("output_bearing_load", "output_bearing_life"):
         return tuple(picture.worst.places) if picture and picture.loads else ()
     if check not in _EXTREME:
@@ -43,10 +43,10 @@ def governing_phases(subject: Subject, check: str | None, picture: BearingPictur
 
 @dataclass(frozen=True)
 class Pictures:
-    """Pictures that page and report set or hand to Plotly; each is made when it is asked for.
+    """Pictures that page and report contain or pass to Plotly; each is made on first use.
 
-    `chosen` is the candidate that is looked at, as it was judged just now or when it was saved. Without a load the
-    bearing is shown under a `condition`.
+    `chosen` is the selected candidate, of this moment or of a saved answer. Without a load the bearing is shown under a
+    `condition`.
     """
 
     subject: Subject
@@ -62,12 +62,12 @@ class Pictures:
 
     @cached_property
     def governing(self) -> tuple[int, ...]:
-        """Places of the phases that the governing check of the candidate goes by."""
+        """Places of the phases that determine the governing check of the candidate."""
         return governing_phases(self.subject, self.chosen.governing_check, self.bearing)
 
     @property
     def governing_rows(self) -> tuple[int, ...]:
-        """Numbers of these phases, or of the moves that they belong to; none where all are alike."""
+        """Numbers of these phases, or of their moves; empty if all are alike."""
         cycle = self.subject.application.duty_cycle
         of_motion = cycle.motion.course.move.tolist() if cycle.motion else range(len(cycle.load_phases))
         places = dict.fromkeys(of_motion[place] for place in self.governing)
@@ -75,35 +75,35 @@ class Pictures:
 
     @cached_property
     def bearing(self) -> BearingPicture | None:
-        """Permitted and given loads of the output bearing, or None where it is not rated."""
+        """Permissible and given loads of the output bearing, or None if it is not rated."""
         return bearing_picture(self.subject, self.chosen.check("output_bearing_life"), self.condition)
 
     @property
     def without_lever(self) -> list[Element]:
-        """Drawings of the loads where they act, as long as their lever is not known; none where nothing is rated."""
+        """Drawings of the loads at their own places while their lever is unknown; empty if nothing is rated."""
         life = self.chosen.check("output_bearing_life")
         picture = bearing_picture(self.subject, life, without_lever=True) if life and life.demand is None else None
         return self._drawn(envelope_scene(picture, self.reader)) if picture else []
 
     @property
     def needed_centres(self) -> list[NeededCentre]:
-        """Distance of the shaft's centre that each size needs, where the loads act off it."""
+        """Distance of the shaft's centre that each size needs if loads act off it."""
         return needed_centres(self.subject.of_sizes)
 
     @cached_property
     def envelope_scene(self) -> Scene:
-        """Envelopes and loads of `bearing`, which must be there."""
+        """Envelopes and loads of `bearing`, which must exist."""
         assert self.bearing is not None
         return envelope_scene(self.bearing, self.reader, self.governing, self.chosen.governing_check)
 
     @cached_property
     def envelope(self) -> list[Element]:
-        """Drawings of `bearing`, which must be there, for a narrow and for a wide place."""
+        """Drawings of `bearing`, which must exist, for a narrow and for a wide place."""
         return self._drawn(self.envelope_scene)
 
     @property
     def bearing_figure(self) -> Figure:
-        """Plotly figure of `bearing`, which must be there."""
+        """Plotly figure of `bearing`, which must exist."""
         assert self.bearing is not None
         return bearing_figure(self.envelope_scene, self.bearing, self.reader)
 
@@ -112,7 +112,7 @@ class Pictures:
 
     @cached_property
     def sizes(self) -> list[SizeUse]:
-        """Bearing of every size under the conditions of `bearing`, which must be there."""
+        """Bearing of every size under the conditions of `bearing`, which must exist."""
         assert self.bearing is not None
         return size_uses(self.subject, self.bearing)
 
@@ -126,7 +126,7 @@ class Pictures:
 
     @property
     def carries(self) -> bool:
-        """True where the bearing carries the loads, which must be given."""
+        """True if the bearing carries the loads, which must be given."""
         assert self.bearing is not None
         return carries(self.bearing)
 
@@ -154,7 +154,7 @@ class Pictures:
 
     @cached_property
     def stops_drawing(self) -> Element | None:
-        """Drawing of the emergency stops, or None where the gear is not rated."""
+        """Drawing of the emergency stops, or None if the gear is not rated."""
         scene = stop_scene(self.subject, self.reader)
         return chart(scene, self.reader, PLANE) if scene else None
 

@@ -1,4 +1,4 @@
-"""Places for labels: none lies over another, and of the free ones the first that the fewest lines cross is taken."""
+"""Places for labels: none covers another, and of the free places the first with the fewest crossing lines is taken."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,10 +9,10 @@ from hpn.explain.drawings.svg import Point
 
 DISTANCES = (21.0, 29.0, 39.0, 52.0, 70.0)
 LETTERS = 0.75
-"""Part of a label's room that its letters fill in most fonts: a line beside them does no harm."""
+"""Part of a label's room that its letters fill in most fonts: a line may run beside them."""
 
 DIRECTIONS = tuple((cos(turn * pi / 6), -sin(turn * pi / 6)) for turn in (1, 2, 0, 3, 11, 5, 10, 4, 9, 6, 8, 7))
-"""Upwards to the right first, where a load has room beyond it."""
+"""Directions about a point; upwards to the right first, where a load has room beyond it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +36,12 @@ class Rectangle:
         return (self.left + self.right) / 2, (self.top + self.bottom) / 2
 
     def meets(self, other: "Rectangle") -> bool:
-        """True for boxes with more than an edge in common."""
+        """True for rectangles with more than an edge in common."""
         across = self.left < other.right and other.left < self.right
         return across and self.top < other.bottom and other.top < self.bottom
 
     def within(self, other: "Rectangle") -> bool:
-        """True for a box that is wholly inside the other."""
+        """True for a rectangle wholly inside the other."""
         across = other.left <= self.left and self.right <= other.right
         return across and other.top <= self.top and self.bottom <= other.bottom
 
@@ -63,7 +63,7 @@ class Rectangle:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Place of a text along a line: its middle, its turn in degrees, and boxes that hold its letters."""
+    """Place of a text along a line: its middle, its turn in degrees, and boxes around its letters."""
 
     at: Point
     turn: float
@@ -71,23 +71,23 @@ class Spot:
 
 
 class LabelRoom:
-    """Room inside a frame: what is taken, and the lines that a label had better not lie on."""
+    """Room inside a frame: taken boxes, and lines that a label should avoid."""
 
     def __init__(self, frame: Rectangle) -> None:
         self.frame = frame
-        self.taken: list[Rectangle] = []
+        self.boxes: list[Rectangle] = []
         self.lines: list[list[Point]] = []
 
     def is_free(self, box: Rectangle) -> bool:
-        """True for a box that lies inside the frame and over nothing that is taken."""
-        return box.within(self.frame) and all(not box.meets(other) for other in self.taken)
+        """True for a box inside the frame that covers no taken one."""
+        return box.within(self.frame) and all(not box.meets(other) for other in self.boxes)
 
     def first(self, candidates: Iterable[Rectangle]) -> Rectangle | None:
-        """Take the first free one of some boxes; None where there is none."""
+        """Take the first free one of some boxes; None without one."""
         return self._take(next(filter(self.is_free, candidates), None))
 
     def clearest(self, spots: Iterable[Spot]) -> Spot | None:
-        """Take the first of the free spots that the fewest lines cross; None where none is free."""
+        """Take the first of the free spots with the fewest crossing lines; None if none is free."""
         best, least = None, inf
         for spot in spots:
             if not all(map(self.is_free, spot.boxes)):
@@ -97,12 +97,12 @@ class LabelRoom:
                 best, least = spot, crossings
             if least == 0:
                 break
-        self.taken += best.boxes if best else []
+        self.boxes += best.boxes if best else []
         return best
 
     def _take(self, box: Rectangle | None) -> Rectangle | None:
         if box is not None:
-            self.taken.append(box)
+            self.boxes.append(box)
         return box
 
     def _crossings(self, box: Rectangle) -> int:
@@ -111,7 +111,7 @@ class LabelRoom:
 
 
 def around(point: Point, width: float, height: float) -> Iterable[Rectangle]:
-    """Boxes of a size at a point and about it, the nearest first."""
+    """Yield boxes of a size at a point and around it, the nearest first."""
     yield Rectangle.around(point, width, height)
     for distance in DISTANCES:
         for across, down in DIRECTIONS:

@@ -1,4 +1,4 @@
-"""Torques at their speeds beside what is permitted, at the gear's output and at the motor; all by magnitude."""
+"""Torques at their speeds beside their limits, at the gear's output and at the motor; all by magnitude."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ import numpy as np
 from hpn.account.readings import figure_symbol
 from hpn.application import Motor
 from hpn.engine.motor_torques import efficiencies
-from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, ChartAxes, LimitCurve, Mark, Scene, chart
+from hpn.explain.drawings.chart import LAST, MOST_NUMBERS, PLANE, ROOM, ChartAxes, LimitCurve, Mark, Scene, chart
 from hpn.explain.drawings.panels import OUT_OF_SCALE
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.subject import Subject
@@ -28,12 +28,12 @@ OUTPUT = ChartAxes(N_("output speed"), "rpm", N_("output torque"), "Nm")
 MOTOR = ChartAxes(N_("motor speed"), "rpm", N_("motor torque"), "Nm")
 
 MOST_MARKS = 200
-"""Phases that are drawn, those nearest to their limit."""
+"""Phases, at most, in a drawing, those nearest to their limit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """A figure of the cycle in a unit of the wire, and what it may be; `relation` compares their symbols."""
+    """A figure of the cycle in a unit of the wire, and its limit; `relation` compares their symbols."""
 
     name: str
     relation: str
@@ -44,7 +44,7 @@ class Demand:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A drawing, and what it shows as rows of a table and in words."""
+    """A drawing, and its content as rows of a table and in words."""
 
     drawing: Element
     demands: list[Demand]
@@ -53,7 +53,7 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class _Limit:
-    """A limit by its symbol; None where it is not known."""
+    """A limit by its symbol; None if unknown."""
 
     symbol: str
     value: float | None
@@ -61,16 +61,26 @@ class _Limit:
 
 @dataclass(frozen=True, slots=True)
 class _Limits:
-    """Limits of torque and speed that hold together, and the demands that they bound, with the names of those."""
+    """Limits of torque and speed that hold together, and their demands (speed, torque) with their names.
+
+    `curve` has the corners of a torque that falls with the speed; `torque` is then its decisive value.
+    """
 
     kind: str
     torque: _Limit
     speed: _Limit
     demand: Point
     names: tuple[Named, Named]
+    curve: Sequence[Point] = ()
+
+    def torque_at(self, speed_rpm: FloatArray) -> FloatArray:
+        """Torque limit in Nm at speeds; infinite if unknown."""
+        if self.curve:
+            return np.asarray(np.interp(speed_rpm, *np.array(self.curve).T))
+        return np.full(np.shape(speed_rpm), self.torque.value or np.inf)
 
     def demands(self, u: float) -> Iterable[Demand]:
-        """Torque, then speed."""
+        """Yield the demands of torque and speed."""
         pairs = zip(self.names, reversed(self.demand), (self.torque, self.speed), ("Nm", "rpm"), strict=True)
         for named, value, limit, unit in pairs:
             if limit.value is None:
@@ -81,7 +91,7 @@ class _Limits:
 
 @dataclass(frozen=True, eq=False)
 class _Cycle:
-    """Points of a cycle: means and peaks of its phases, shape (phases,), and the curve of a motion and its moves."""
+    """Points of a cycle: means and peaks of its phases, shape (phases,), and the curves and moves of a motion."""
 
     speed_rpm: FloatArray
     torque_Nm: FloatArray
@@ -92,12 +102,12 @@ class _Cycle:
     moves: Sequence[int] | None = None
 
     def rows(self, places: Sequence[int]) -> list[int]:
-        """Places of the rows that some phases come from: of a motion those of its moves."""
+        """Places of the rows of some phases; for a motion the rows of their moves."""
         return list(places) if self.moves is None else sorted({self.moves[place] for place in places})
 
 
 def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Plane:
-    """Output torque against output speed, with the gear's limits of both, averages and peaks."""
+    """Output torque against output speed, with the gear's limits of averages and peaks."""
     duty, gear, phases = subject.duty, subject.gear, subject.duty.phases
     rated, peak = (
         _Limit(GEAR[name].symbol, getattr(gear, name)) for name in ("rated_torque_Nm", "repeated_peak_torque_Nm")
@@ -139,11 +149,12 @@ def gear_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[i
 
 
 def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Plane:
-    """Motor torque against motor speed on a gear, with the limits of the motor that were given.
+    """Motor torque against motor speed on a gear, with the given limits of the motor.
 
-    Of a motion whose motor's inertia is known the curve holds it.
+    If the inertia of a motion's motor is known, the curve includes it.
     """
     figures, motor = subject.of_gear, subject.equipped.requirements.motor or Motor()
+    curve = motor.curve or ()
     turns = subject.duty.courses.get(0) is not None and motor.inertia_kgm2 is not None
     adds = turns or subject.gear.no_load_torque_Nm is not None
     peak, rms = (
@@ -153,17 +164,19 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
     limits = (
         _Limits(
             "limit",
-            _of_motor(motor, "peak_torque_Nm"),
-            _of_motor(motor, "maximum_speed_rpm"),
+            _of_curve(PEAK, figures.by_curve.peak_Nm) if curve else _of_motor(motor, "peak_torque_Nm"),
+            _Limit(INPUTS["requirements.motor.maximum_speed_rpm"].symbol, motor.top_speed_rpm),
             (figures.maximum_input_speed_rpm.item(), figures.motor_peak_torque_Nm.item()),
             (peak, CANDIDATE["maximum_input_speed_rpm"]),
+            [(point.speed_rpm, point.peak_Nm) for point in curve],
         ),
         _Limits(
             "mean",
-            _of_motor(motor, "rated_torque_Nm"),
-            _of_motor(motor, "rated_speed_rpm"),
+            _of_curve(CONTINUOUS, figures.by_curve.continuous_Nm) if curve else _of_motor(motor, "rated_torque_Nm"),
+            _Limit("", None) if curve else _of_motor(motor, "rated_speed_rpm"),
             (figures.average_input_speed_rpm.item(), figures.motor_rated_torque_Nm.item()),
             (rms, CANDIDATE["average_input_speed_rpm"]),
+            [(point.speed_rpm, point.continuous_Nm) for point in curve],
         ),
     )
     words = [
@@ -171,7 +184,7 @@ def motor_plane(subject: Subject, reader: Reader = DEFAULT, governing: Sequence[
         _compared(N_("RMS torque {torque}, average speed {speed}."), limits[1], subject),
     ]
     scene = _scene(_at_motor(subject, motor), limits, "T_rms", MOTOR, subject, reader, governing)
-    scene = replace(scene, lines=[*scene.lines, *_drive_limit(subject, scene, reader)])
+    scene = replace(scene, lines=[*scene.lines, *_limits_of_gear(subject, scene, reader)])
     return _plane(scene, limits, words, subject, reader)
 
 
@@ -180,13 +193,27 @@ def _plane(scene: Scene, limits: Sequence[_Limits], words: list[Sentence], subje
     return Plane(chart(scene, reader, PLANE), demands, words)
 
 
-def _drive_limit(subject: Subject, scene: Scene, reader: Reader) -> Iterable[LimitCurve]:
-    """Torque limit to set in the drive, right across, where it is not far beyond the rest."""
+def _limits_of_gear(subject: Subject, scene: Scene, reader: Reader) -> Iterable[LimitCurve]:
+    """Yield the drive's torque limit, right across, and the gear's input speed limit, if not far beyond the rest."""
     limit = subject.of_gear.motor_torque_limit_Nm.item()
     most = max((T for line in scene.lines for _, T in line.corners if not isinf(T)), default=0.0)
     most = max(most, *(mark.place[1] for mark in scene.marks))
     if limit <= OUT_OF_SCALE * most:
         yield LimitCurve("drive", reader.text(N_("drive limit")), [(0.0, limit), (inf, limit)])
+    fastest = max((n for line in scene.lines for n, _ in line.corners if not isinf(n)), default=0.0)
+    fastest = max(fastest, *(mark.place[0] for mark in scene.marks))
+    speed = subject.gear.maximum_input_speed_rpm
+    if speed is not None and speed <= ROOM * fastest:
+        yield LimitCurve("drive", reader.text(N_("gear limit")), [(speed, inf), (speed, 0.0)])
+
+
+PEAK, CONTINUOUS = "M_p(n)", "M_c(n)"
+"""Symbols of the peak and the continuous torque along a curve."""
+
+
+def _of_curve(symbol: str, limit: FloatArray) -> _Limit:
+    value = limit.item()
+    return _Limit(symbol, None if np.isnan(value) else value)
 
 
 def _of_motor(motor: Motor, name: str) -> _Limit:
@@ -194,7 +221,7 @@ def _of_motor(motor: Motor, name: str) -> _Limit:
 
 
 def _at_motor(subject: Subject, motor: Motor) -> _Cycle:
-    """Phases at the motor: RMS torque at the mean speed, and peaks; of a motion the torque at every instant."""
+    """Phases at the motor: RMS torque at the mean speed, and peaks; for a motion the torque at every instant."""
     duty, gear, i, phases = subject.duty, subject.gear, subject.gear.ratio, subject.duty.phases
     at_peak, at_rms = efficiencies(duty, gear, subject.catalogue)
     own, T_0 = gear.inertia_kgm2 or 0.0, gear.no_load_torque_Nm or 0.0
@@ -251,7 +278,7 @@ def _scene(
     if not cycle.curves:
         lines += _spans(cycle)
     marks = _phases(cycle, limits[0], u, governing, reader)
-    text = reader.told(_compared("{torque}, {speed}", limits[1], subject))
+    text = reader.sentence(_compared("{torque}, {speed}", limits[1], subject))
     outside = any(
         beyond_limit(demand / limit.value, u)
         for demand, limit in zip(limits[1].demand, (limits[1].speed, limits[1].torque), strict=True)
@@ -262,8 +289,11 @@ def _scene(
 
 
 def _lines(limits: _Limits, u: float, most: Point) -> Iterable[LimitCurve]:
-    """The rectangle of a torque and a speed; where one of them is not drawn, the other goes right across."""
+    """Yield the rectangle of a torque and a speed; if one of them is not drawn, the other goes right across."""
     n, T = (_drawn_at(limit, u, value) for limit, value in zip((limits.speed, limits.torque), most, strict=True))
+    if limits.curve:
+        yield from _along(limits, u, n)
+        return
     if limits.kind == "limit" and not (isinf(n) and isinf(T)):
         yield LimitCurve("region", "", [(0.0, T), (n, T), (n, 0.0)], strong=True)
     if not isinf(T):
@@ -272,8 +302,20 @@ def _lines(limits: _Limits, u: float, most: Point) -> Iterable[LimitCurve]:
         yield LimitCurve(limits.kind, _name(limits.speed, u), [(n, T), (n, 0.0)])
 
 
+def _along(limits: _Limits, u: float, fastest: float) -> Iterable[LimitCurve]:
+    """Yield a torque over speed times u, as far as the motor turns."""
+    (speeds, torques), end = np.array(limits.curve).T, min(fastest, limits.curve[-1][0])
+    inside = [(n, u * T) for n, T in limits.curve if n < end]
+    corners = [*inside, (end, u * float(np.interp(end, speeds, torques)))]
+    if limits.kind == "limit":
+        yield LimitCurve("region", "", [*corners, (end, 0.0)], strong=True)
+    yield LimitCurve(limits.kind, _name(limits.torque, u), corners)
+    if limits.kind == "limit" and not isinf(fastest):
+        yield LimitCurve(limits.kind, _name(limits.speed, u), [corners[-1], (fastest, 0.0)])
+
+
 def _drawn_at(limit: _Limit, u: float, most: float) -> float:
-    """A limit in its unit, times u; infinity where it is not known, or far beyond the cycle."""
+    """A limit in its unit, times u; infinity if unknown, or far beyond the cycle."""
     return u * limit.value if limit.value is not None and u * limit.value <= OUT_OF_SCALE * most else inf
 
 
@@ -282,29 +324,31 @@ def _name(limit: _Limit, u: float) -> str:
 
 
 def _beyond(limits: Sequence[_Limits], u: float, most: Point, reader: Reader) -> Iterable[str]:
-    """Limits far beyond the cycle, each with an arrow that says where it lies; those that belong together in a row."""
+    """Yield limits far beyond the cycle, each with an arrow towards it; those of one kind in a row."""
     for one in limits:
         pairs = ((one.torque, most[1], "↑", "Nm"), (one.speed, most[0], "→", "rpm"))
         names = [
             f"{arrow} {_name(limit, u)} {reader.with_unit(reader.figure(u * limit.value, unit), unit)}"
             for limit, value, arrow, unit in pairs
-            if limit.value is not None and isinf(_drawn_at(limit, u, value))
+            if limit.value is not None and isinf(_drawn_at(limit, u, value)) and not (one.curve and unit == "Nm")
         ]
         if names:
             yield "\N{EM SPACE}".join(names)
 
 
 def _spans(cycle: _Cycle) -> Iterable[LimitCurve]:
-    """From the mean of each phase that varies to its peak."""
+    """Lines from the mean of each varying phase to its peak."""
     means, peaks = ((cycle.speed_rpm, cycle.torque_Nm), (cycle.peak_speed_rpm, cycle.peak_torque_Nm))
     ends = zip(*(map(tuple, np.stack(points, axis=1)[:MOST_MARKS].tolist()) for points in (means, peaks)), strict=True)
     return [LimitCurve("span", "", [mean, peak]) for mean, peak in dict.fromkeys(ends) if mean != peak]
 
 
 def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], reader: Reader) -> list[Mark]:
-    """A numbered disc at the peak of each phase, those of one place together; what varies has a dot at its mean."""
+    """A numbered disc at the peak of each phase, one for phases at the same place; a varying phase has a dot at its
+    mean.
+    """
     n, T = cycle.peak_speed_rpm, cycle.peak_torque_Nm
-    used = np.maximum(n / (limits.speed.value or np.inf), T / (limits.torque.value or np.inf))
+    used = np.maximum(n / (limits.speed.value or np.inf), T / limits.torque_at(n))
     together: dict[Point, list[int]] = {}
     for k in np.argsort(-used, kind="stable").tolist():
         place = max(cycle.curves[k], key=lambda point: point[1]) if cycle.curves else (n.item(k), T.item(k))
@@ -315,7 +359,7 @@ def _phases(cycle: _Cycle, limits: _Limits, u: float, governing: Sequence[int], 
         most = max(places, key=lambda k: used[k])
         kind = "load governing" if set(governing) & set(places) else "load"
         label = disc_label(cycle.rows(places)) if order < MOST_NUMBERS else ""
-        text = reader.told(_sentence_of(cycle, most, places)) if label else ""
+        text = reader.sentence(_sentence_of(cycle, most, places)) if label else ""
         marks.append(Mark(kind, label, place, text, used.item(most), beyond_limit(used.item(most), u), places[:100]))
     if not cycle.curves:
         means = set(zip(cycle.speed_rpm.tolist(), cycle.torque_Nm.tolist(), strict=True)) - set(together)
@@ -344,7 +388,7 @@ def _compared(template: str, limits: _Limits, subject: Subject) -> Sentence:
 
 
 def _of(demand: float, limit: _Limit, u: float, unit: str) -> Value:
-    """A demand, and what it may be where that is known."""
+    """A demand, with its limit if known."""
     if limit.value is None:
         return Quantity(demand, unit)
     values: dict[str, Value] = {"demand": Quantity(demand, unit), "limit": Quantity(u * limit.value, unit)}

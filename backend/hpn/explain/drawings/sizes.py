@@ -1,4 +1,4 @@
-"""Loads permitted on the output bearing of each size under an application, and how far its loads use it."""
+"""Permissible loads on the output bearing of each size under an application, and the share that its loads use."""
 
 import math
 from dataclasses import dataclass
@@ -14,10 +14,11 @@ from hpn.explain.drawings.subject import Subject
 
 @dataclass(frozen=True, slots=True)
 class SizeUse:
-    """One size: what a constant load may be on it, and how far the loads use it, each None where it is not rated.
+    """One size: curves of its permissible loads, and the share of them that the loads use; None where not rated.
 
-    `allowed` is the user's u. Without loads nothing is used. `single` is what a single load may be, `radial_N` the
-    largest radial load at the shaft's centre, and `centre_mm` the distance x_c that counts for it.
+    `curve` is for a constant load, `single` for a single one; `constant_load` and `published` are the used shares, None
+    without loads. `allowed` is the user's u, `radial_N` the largest radial load at the shaft's centre, and `centre_mm`
+    the distance x_c behind it.
     """
 
     gear: Gear
@@ -31,14 +32,14 @@ class SizeUse:
 
     @property
     def carries(self) -> bool | None:
-        """True where both are within the allowed share; None where it is not rated."""
+        """True where both shares are within the allowed one; None where not rated."""
         if self.constant_load is None or self.published is None:
             return None
         return not beyond_limit(max(self.constant_load, self.published), self.allowed)
 
 
 def size_uses(subject: Subject, picture: BearingPicture) -> list[SizeUse]:
-    """Use of the bearing of every size of the catalogue, under the conditions of a picture."""
+    """Use of the bearing of every size of the catalogue under the conditions of a picture."""
     figures, load, u = subject.of_sizes, picture.load, picture.allowed
     most = min(1.0, picture.life_factor)
     shape = len(subject.sizes.rows), subject.duty.phases.radial_N.shape[-1]

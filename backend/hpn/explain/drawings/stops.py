@@ -11,7 +11,7 @@ from hpn.words.reader import DEFAULT, Reader
 from hpn.words.wording import N_, Quantity, Sentence, Value
 
 TOP = 8.0
-"""Power of ten at which the stop of a user stands whose number is not limited."""
+"""Power of ten at which a stop without a limit of its number is drawn."""
 
 AXES = ChartAxes(N_("emergency-stop torque"), "Nm", N_("number of stops"), "", powers=True)
 
@@ -19,8 +19,7 @@ AXES = ChartAxes(N_("emergency-stop torque"), "Nm", N_("number of stops"), "", p
 def stop_scene(subject: Subject, reader: Reader = DEFAULT) -> Scene | None:
     """Allowed number of emergency stops against their torque (equation 17.9), with the user's stop on it.
 
-    Numbers are powers of ten, for which the equation is a straight line. None where the gear's ratings are not
-    published.
+    Numbers are powers of ten, so that the equation is a straight line. None if the gear's ratings are not published.
     """
     T_R, T_M = subject.gear.repeated_peak_torque_Nm, subject.gear.momentary_peak_torque_Nm
     if T_R is None or T_M is None:
@@ -37,12 +36,12 @@ def stop_scene(subject: Subject, reader: Reader = DEFAULT) -> Scene | None:
 
 
 def _power(torque_Nm: float, T_R: float) -> float:
-    """Power of ten that is the number of stops at a torque."""
+    """Decimal logarithm of the number of stops at a torque."""
     return log10(equations.momentary_peaks_at(emergency_stop_torque_Nm=torque_Nm, repeated_peak_torque_Nm=T_R).item())
 
 
 def _stop(subject: Subject, T_M: float, reader: Reader) -> list[Mark]:
-    """The user's stop at its expected number, or else at the one allowed; none where not one is allowed."""
+    """The user's stop at its expected, else its allowed number; empty if none is allowed."""
     stop, torque = subject.application.emergency_stop, subject.emergency_stop_torque_Nm
     allowed = allowed_stops(subject)
     if stop is None or torque is None or allowed is None or max(stop.count or 0, allowed) < 1:
@@ -65,7 +64,7 @@ def allowed_stops(subject: Subject) -> float | None:
 
 
 def emergency_stop_words(subject: Subject) -> list[Sentence]:
-    """How many stops are allowed at the user's torque, and how much of that budget they use."""
+    """Number of allowed stops at the user's torque, and the share of it that the user's stops use, in words."""
     gear, stop, torque = subject.gear, subject.application.emergency_stop, subject.emergency_stop_torque_Nm
     T_R, T_M, allowed = gear.repeated_peak_torque_Nm, gear.momentary_peak_torque_Nm, allowed_stops(subject)
     if T_R is None or T_M is None:

@@ -1,4 +1,4 @@
-"""Subject of the pictures: an application, and the gear that its reader looks at."""
+"""Subject of the pictures: an application, and the selected gear."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,9 +15,9 @@ from hpn.engine.figures import Figures
 
 @dataclass(frozen=True)
 class Subject:
-    """An application and one gear; figures shared by its pictures are computed once, for the first that uses them.
+    """An application and one gear; figures that its pictures share are computed once, on first use.
 
-    `chosen` is the gear as it was judged, just now or when it was saved.
+    `chosen` is the judged gear, of this moment or of a saved answer.
     """
 
     application: Application
@@ -32,7 +32,9 @@ class Subject:
 
     @cached_property
     def sizes(self) -> GearList:
-        """The first gear of every size: what belongs to a size, as its output bearing does, is the same in all."""
+        """The first gear of every size: properties of a size, such as its output bearing, are the same in all its
+        gears.
+        """
         first: dict[str, Gear] = {}
         for gear in self.catalogue.gears:
             first.setdefault(gear.size, gear)
@@ -45,7 +47,7 @@ class Subject:
 
     @cached_property
     def equipped(self) -> Application:
-        """The application with the figures of the motor that it names."""
+        """The application with the figures of its listed motor."""
         return with_listed_motor(self.application, self.catalogue)
 
     @cached_property
@@ -61,7 +63,7 @@ class Subject:
 
     @cached_property
     def emergency_stop_torque_Nm(self) -> float | None:
-        """Torque of the emergency stop on the gear by magnitude, or None where there is none."""
+        """Torque of the emergency stop on the gear by magnitude, or None without one."""
         stop = self.application.emergency_stop
         if stop is None:
             return None

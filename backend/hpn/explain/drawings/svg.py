@@ -1,4 +1,4 @@
-"""Elements of an SVG drawing, with the handbook's symbols set as such; a style sheet gives colours and letter sizes."""
+"""Elements of an SVG drawing, with the handbook's symbols in italics; a style sheet gives colours and letter sizes."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,37 +9,37 @@ from hpn.words.symbols import sentence
 Point = tuple[float, float]
 
 NAMESPACE = "http://www.w3.org/2000/svg"
-"""Namespace of a drawing that stands alone; in a page the name of the element says it."""
+"""Namespace of a drawing outside a page; in a page the element's name is enough."""
 
 LETTER = 14.0
-"""Size of a letter, in units of a drawing, that texts have room for; a style sheet may only set smaller ones."""
+"""Letter size, in units of a drawing, that texts have room for; a style sheet may only set smaller ones."""
 
 STYLE = Path(__file__).with_name("drawings.css")
 """Style sheet of all drawings, in the colours of the page's tokens."""
 
 WIDE = 0.64
-"""Width of a character in letter sizes: that of a digit in DejaVu Sans, the widest of the usual fonts."""
+"""Width of a character in letter sizes: of a digit in DejaVu Sans, the widest of the usual fonts."""
 
 
 def canvas(kind: str, width: float, height: float) -> Element:
-    """An empty drawing of a kind that the style sheet knows."""
+    """An empty drawing of a kind in the style sheet."""
     box = f"0 0 {written(width)} {written(height)}"
     return Element("svg", {"class": f"drawing {kind}", "viewBox": box})
 
 
 def add(parent: Element, name: str, kind: str, **attributes: float | str) -> Element:
-    """Add an element of a kind that the style sheet knows; `_` in the name of an attribute is a hyphen."""
+    """Add an element of a kind in the style sheet; `_` in the name of an attribute stands for a hyphen."""
     texts = {key.replace("_", "-"): written(value) for key, value in attributes.items()}
     return SubElement(parent, name, {"class": kind, **texts})
 
 
 def text(parent: Element, kind: str, at: Point, content: str, anchor: str = "start") -> Element:
-    """Add a text, its symbols in italics with their index below."""
+    """Add a text, its symbols in italics with subscripts."""
     return runs(parent, kind, at, [("", content)], anchor)
 
 
 def runs(parent: Element, kind: str, at: Point, parts: Iterable[tuple[str, str]], anchor: str = "start") -> Element:
-    """Add a text of several parts, each of a kind of its own, a space between two."""
+    """Add a text of several parts, each of its own kind, separated by a space."""
     element = add(parent, "text", kind, x=at[0], y=at[1], **({} if anchor == "start" else {"text_anchor": anchor}))
     lowered = False
     for place, (own, content) in enumerate(parts):
@@ -62,7 +62,7 @@ def _run(element: Element, kind: str, content: str, shift: float) -> None:
 
 
 def width_of(content: str) -> float:
-    """Most room that a text takes."""
+    """Upper bound of a text's width, in units of a drawing."""
     return WIDE * LETTER * (len(content) - content.count("_") / 2)
 
 
@@ -73,12 +73,12 @@ def path(points: Iterable[Point], *, closed: bool = False) -> str:
 
 
 def written(value: float | str) -> str:
-    """An attribute: a number to a thousandth of a unit."""
+    """Text of an attribute: a number to a thousandth of a unit."""
     return value if isinstance(value, str) else f"{value:.3f}".rstrip("0").rstrip(".")
 
 
 def markup(drawing: Element, style: str = "") -> str:
-    """A drawing as text; with its namespace and a style sheet of its own where no page is around it."""
+    """A drawing as text; with a namespace and a style sheet if it stands outside a page."""
     if not style:
         return tostring(drawing, encoding="unicode")
     alone = Element(drawing.tag, {"xmlns": NAMESPACE, **drawing.attrib})

@@ -2,12 +2,11 @@
 
 from hpn.explain.drawings.picture import BearingPicture, beyond_limit
 from hpn.explain.drawings.words import phase_numbers, share
-from hpn.physics import bearing
 from hpn.words.wording import Quantity, Sentence, Value
 
 
 def carries(picture: BearingPicture) -> bool:
-    """True where single loads and life stay within what is allowed."""
+    """True where single loads and life stay within the allowed share."""
     return not beyond_limit(_most_used(picture), picture.allowed)
 
 
@@ -16,7 +15,7 @@ def _most_used(picture: BearingPicture) -> float:
 
 
 def bearing_verdict(picture: BearingPicture) -> Sentence:
-    """Verdict on the loads; one that exceeds the user's u alone says so."""
+    """Verdict on the loads, with a text of its own if they exceed only the user's u."""
     if picture.allowed == 1:
         if carries(picture):
             return Sentence("The output bearing carries these loads.")
@@ -33,7 +32,7 @@ def bearing_verdict(picture: BearingPicture) -> Sentence:
 
 
 def bearing_words(picture: BearingPicture) -> list[Sentence]:
-    """The governing limit, both utilisations, which loads are outside, and what the next printed f_w would come to."""
+    """The governing limit, both utilisations, and the phases outside."""
     governs = (
         Sentence("Bearing life decides.") if picture.life_governs else Sentence("The largest single load decides.")
     )
@@ -52,7 +51,7 @@ def bearing_words(picture: BearingPicture) -> list[Sentence]:
     )
     of_one = Sentence("Equivalent load: {used} of the permissible constant load ({speed}, {life}, {basis}).", values)
     equivalent = of_both if picture.life_factor > 1 else of_one
-    return [governs, equivalent, _largest(picture), *_outside(picture), *_next_load_coefficient(picture)]
+    return [governs, equivalent, _largest(picture), *_outside(picture)]
 
 
 def _largest(picture: BearingPicture) -> Sentence:
@@ -70,16 +69,3 @@ def _outside(picture: BearingPicture) -> list[Sentence]:
     if not places or len(picture.loads) == 1:
         return []
     return [Sentence("Outside the limit of a single load: phase {phases}.", {"phases": phase_numbers(places)})]
-
-
-def _next_load_coefficient(picture: BearingPicture) -> list[Sentence]:
-    """Utilisation of the limit that governs, with the next printed load coefficient, which every load grows by."""
-    f_w, used = picture.load.load_coefficient, _most_used(picture)
-    larger = next((printed for printed in bearing.PRINTED_LOAD_COEFFICIENTS if printed > f_w), None)
-    if larger is None or used == 0:
-        return []
-    values: dict[str, Value] = {
-        "coefficient": Quantity(larger, ""),
-        "used": share(used * larger / f_w, picture.allowed),
-    }
-    return [Sentence("With f_w = {coefficient}: utilisation of the bearing {used}.", values)]

@@ -1,6 +1,6 @@
 """Concepts of the submodels' properties: names in both languages, units, and ids of our own.
 
-The ids are UUIDs made from names: they claim no number of ECLASS, IEC or the maker that we could not check.
+The ids are UUIDs made from names: they claim no number of ECLASS, IEC or the manufacturer that we could not check.
 """
 
 from collections.abc import Mapping
@@ -21,11 +21,11 @@ _TEXTS_AND_PARTS = (
     *("designation", "rank", "governing_check", "reason", "reserve", "checks", "code"),
     *("clamp_bolts", "housing_bolts", "note", "sources"),
 )
-"""Fields that are no property of their own."""
+"""Fields without a property of their own."""
 
 
 def published(field: str) -> str:
-    """Concept of a published figure; its name says so where a calculated figure has the same field."""
+    """Concept of a published figure, with the prefix `published_` where a calculated figure has the same field."""
     same = CANDIDATE.get(field, GEAR[field]).name == GEAR[field].name
     return field if same else f"published_{field}"
 
@@ -46,12 +46,12 @@ CONCEPTS: Mapping[str, Named] = {
 
 
 def urn(*parts: str) -> str:
-    """An id that is the same for the same parts."""
+    """Id made from the parts; the same parts make the same id."""
     return uuid5(NAMESPACE_URL, "/".join(("hpn-select", *parts))).urn
 
 
 def reference(value: str) -> model.ExternalReference:
-    """Reference to a meaning outside of this package, or to one of its concept descriptions."""
+    """Reference to a meaning outside this package, or to one of its concept descriptions."""
     return model.ExternalReference((model.Key(model.KeyTypes.GLOBAL_REFERENCE, value),))
 
 
@@ -61,13 +61,13 @@ def concept_id(name: str) -> str:
 
 
 def texts(english: str) -> dict[str, str]:
-    """A text in every language."""
+    """Text in every language."""
     return {code: Reader(code).text(english) for code in LANGUAGES}
 
 
-def told(sentence: Sentence) -> dict[str, str]:
-    """A sentence in every language."""
-    return {code: Reader(code, digits=DIGITS).told(sentence) for code in LANGUAGES}
+def translations(sentence: Sentence) -> dict[str, str]:
+    """Sentence in every language."""
+    return {code: Reader(code, digits=DIGITS).sentence(sentence) for code in LANGUAGES}
 
 
 def concept(name: str) -> ConceptDescription:

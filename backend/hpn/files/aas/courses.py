@@ -1,8 +1,8 @@
-"""Motion of an application as 02021 has it: sections of a motion pattern, each with its course over time as CSV.
+"""Motion of an application in the form of 02021: sections of a motion pattern, each with its course over time as CSV.
 
-Phases are rotative sections at the gear's output, one for each or, of very many, one for all. A motion has a section
-for each move, at the mechanism: rotative, or linear for a mass along a line. All is in SI units; a property of the
-metadata is the unit of its column, 1 of it.
+Phases are rotative sections at the gear's output, one for each phase, or one for all where there are very many. A
+motion has a section for each move, at the mechanism: rotative, or linear for a mass along a line. All values are in SI
+units; a property of the metadata is 1 of its column's unit.
 """
 
 import math
@@ -18,16 +18,16 @@ from hpn.physics.motion.mechanisms import RPM
 from hpn.physics.motion.trace import trace_of
 
 MOST_SECTIONS = 100
-"""Phases or moves that have a section each; more share one."""
+"""Most phases or moves with a section each; more share one."""
 
 ROTATIVE = ("Time", "AngularPosition", "AngularVelocity", "AngularAcceleration")
 LINEAR = ("Time", "Position", "LinearVelocity", "LinearAcceleration")
 LOADS = ("LoadTorque", "RadialForce", "AxialForce")
-"""Columns of a course, and of what acts on it."""
+"""Columns of a course, and columns of the loads that act on it."""
 
 
 class MotionSection(NamedTuple):
-    """A section: `kind` and `metadata` are the template's short ids, and `rows` has a row for each instant."""
+    """Section: `kind` and `metadata` are short ids of the template; `rows` has a row for each instant, in SI units."""
 
     kind: str
     metadata: str
@@ -36,13 +36,13 @@ class MotionSection(NamedTuple):
     rows: FloatArray
 
     def csv(self) -> bytes:
-        """Its course, every digit of each number."""
+        """Course as CSV, with every digit of each number."""
         lines = [",".join(self.columns), *(",".join(map(repr, row)) for row in self.rows.tolist())]
         return "\r\n".join([*lines, ""]).encode()
 
 
 def sections_of(cycle: DutyCycle) -> Iterator[MotionSection]:
-    """Sections of a duty cycle in their order, its pause as the last one."""
+    """Sections of a duty cycle in their order; the pause is the last one."""
     if cycle.motion is not None:
         yield from _of_motion(cycle.motion)
     else:
@@ -61,7 +61,7 @@ def _linear(constants: Mapping[str, float], rows: FloatArray) -> MotionSection:
 
 
 def _of_phases(cycle: DutyCycle) -> Iterator[MotionSection]:
-    """Sections of typed phases; their torques and loads act from outside, so they are the negative of the gear’s."""
+    """Sections of typed phases; their torques act from outside, so they are the negative of the gear's."""
     phases = cycle.load_phases
     steps = [
         (
@@ -115,13 +115,9 @@ def _of_motion(motion: RotaryMotion | LinearMotion) -> Iterator[MotionSection]:
             yield _linear({**_of_mass(motion), "LoadSideForce": -move.external}, rows)
         else:
             acting = _acting(move.external, move.radial_N, move.axial_N)
-            given = {name: value for name, value in acting.items() if value is not None}
-            yield _rotative({**_of_table(motion), **given}, ROTATIVE, rows)
-
-
-def _of_table(motion: RotaryMotion) -> dict[str, float]:
-    load = motion.mechanism.load
-    return {"MomentOfInertiaOfLoad": load.inertia_kgm2, "FrictionTorque": load.friction_Nm}
+            forces = {name: value for name, value in acting.items() if value is not None}
+            table = {"MomentOfInertiaOfLoad": load.inertia_kgm2, "FrictionTorque": load.friction_Nm}
+            yield _rotative(table | forces, ROTATIVE, rows)
 
 
 def _of_mass(motion: LinearMotion) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Duty cycle out of the sections of a motion pattern: a phase for each stretch of one acceleration and one load."""
+"""Duty cycle from the sections of a motion pattern: a phase for each stretch of constant acceleration and load."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,18 +21,18 @@ LACKS = N_("the sizing lacks {field}, without which the torque is not known")
 NO_SPEED = N_("a course has neither speed nor position over time")
 TOO_MANY = N_("the courses come to more than {most} phases")
 ALIKE = 1e-9
-"""Relative difference below which two accelerations, or two loads, are one."""
+"""Relative difference below which two accelerations or two loads count as equal."""
 
 
 def cycle_of(sections: Sequence[MotionSection], mechanism: Mapping[str, float]) -> dict[str, Any]:
-    """Phases at the gear's output, and the pause: what rests at the end without a load."""
-    found = [phase for section in sections for phase in _phases(section, mechanism)]
-    if len(found) > MAXIMUM_PHASES:
+    """Phases at the gear's output, and the pause: the phases at rest without load at the end. Raises RefusedError."""
+    phases = [phase for section in sections for phase in _phases(section, mechanism)]
+    if len(phases) > MAXIMUM_PHASES:
         raise RefusedError(TOO_MANY, most=MAXIMUM_PHASES)
     pause = 0.0
-    while len(found) > 1 and not found[-1]["speed_rpm"] and not found[-1]["torque_Nm"]:
-        pause += found.pop()["duration_s"]
-    return {"phases": found, "pause_s": pause}
+    while len(phases) > 1 and not phases[-1]["speed_rpm"] and not phases[-1]["torque_Nm"]:
+        pause += phases.pop()["duration_s"]
+    return {"phases": phases, "pause_s": pause}
 
 
 def _phases(section: MotionSection, mechanism: Mapping[str, float]) -> Iterator[dict[str, float]]:
@@ -47,10 +47,10 @@ def _phases(section: MotionSection, mechanism: Mapping[str, float]) -> Iterator[
     lasting = np.diff(time)
     moving = lasting > 0
     acceleration = np.divide(np.diff(speed), lasting, out=np.zeros_like(lasting), where=moving)
-    name = "LoadSideForce" if is_linear else "LoadTorque"
+    name, of_friction = ("LoadSideForce", "FrictionForce") if is_linear else ("LoadTorque", "FrictionTorque")
     outside = _value(section, columns, name)[:-1] * load.external_Nm
-    friction = _value(section, columns, "FrictionForce" if is_linear else "FrictionTorque")[:-1]
-    varying = friction * load.external_Nm if _is_column(columns, is_linear) else np.full(len(lasting), load.friction_Nm)
+    friction = _value(section, columns, of_friction)[:-1] * load.external_Nm
+    varying = friction if of_friction in columns else np.full(len(lasting), load.friction_Nm)
     loads = {"radial_N": "RadialForce", "axial_N": "AxialForce"}
     acting = {
         field: np.abs(_value(section, columns, name)[:-1])
@@ -61,12 +61,8 @@ def _phases(section: MotionSection, mechanism: Mapping[str, float]) -> Iterator[
         yield from _phase(slice(start, end), lasting, speed, acceleration, outside, varying, load, acting)
 
 
-def _is_column(columns: Mapping[str, FloatArray], is_linear: bool) -> bool:
-    return ("FrictionForce" if is_linear else "FrictionTorque") in columns
-
-
 def _value(section: MotionSection, columns: Mapping[str, FloatArray], name: str) -> FloatArray:
-    """A quantity over time: its column, else what holds for the whole section, else 0."""
+    """Quantity over time: its column, else its constant of the section, else 0."""
     return columns[name] if name in columns else np.full(len(section.rows), section.constants.get(name, 0.0))
 
 
@@ -80,7 +76,8 @@ def _speed(columns: Mapping[str, FloatArray], time: FloatArray, names: Sequence[
 
 
 def _stretches(moving: BoolArray, speed: FloatArray, *steady: FloatArray) -> list[tuple[int, int]]:
-    """Ends of stretches of intervals in which these values are steady, without a jump or a change of direction."""
+    """First interval and end of stretches in which these values are constant, without a jump or a change of
+    direction."""
     broken = ~(moving[1:] & moving[:-1]) | (speed[:-2] * speed[2:] < 0)
     for values in steady:
         broken |= np.abs(np.diff(values)) > ALIKE * np.abs(values).max(initial=0.0)
@@ -98,7 +95,7 @@ def _phase(
     load: ShaftLoad,
     acting: Mapping[str, FloatArray],
 ) -> Iterator[dict[str, float]]:
-    """A stretch as a phase, or as two where its direction turns within."""
+    """Stretch as a phase, or as two where its direction changes within."""
     duration, first, last = float(lasting[part].sum()), float(speed[part.start]), float(speed[part.stop])
     legs = [(duration, first, last)]
     if first * last < 0:
@@ -132,12 +129,13 @@ def _rotary_load(section: MotionSection, mechanism: Mapping[str, float]) -> Shaf
 
 
 def _efficiency(mechanism: Mapping[str, float]) -> float:
+    """Efficiency as a share; a value above 1 is in percent."""
     value = mechanism.get("Efficiency", 1.0)
-    return value if 0 < value <= 1 else value / 100 if 1 < value <= 100 else 1.0
+    return value if value <= 1 else value / 100
 
 
 def _linear_load(section: MotionSection, mechanism: Mapping[str, float]) -> ShaftLoad:
-    """Load of a mass along a line, by the mechanisms of the product: way per turn is all that tells them apart."""
+    """Load of a mass along a line, as on a ball screw: linear mechanisms differ only in their way per turn."""
     feed = mechanism.get("FeedConstant") or math.pi * mechanism.get("DiameterPinion", 0.0)
     mass = section.constants.get("LoadMass", 0.0)
     if not feed or not mass:
@@ -147,7 +145,7 @@ def _linear_load(section: MotionSection, mechanism: Mapping[str, float]) -> Shaf
         else:
             raise RefusedError(LACKS, field="FeedConstant" if not feed else "LoadMass")
     incline = math.degrees(mechanism.get("InclinationAngle", 0.0))
-    given = {
+    screw = {
         "type": "ball_screw",
         "lead_mm": 1000 * feed,
         "mass_kg": mass,
@@ -159,4 +157,4 @@ def _linear_load(section: MotionSection, mechanism: Mapping[str, float]) -> Shaf
         "friction_torque_Nm": mechanism.get("NoLoadTorque", 0.0),
         "efficiency": _efficiency(mechanism),
     }
-    return BallScrew.model_validate(given).load
+    return BallScrew.model_validate(screw).load

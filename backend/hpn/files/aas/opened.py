@@ -1,9 +1,9 @@
-"""Sizing of Power Drive Trains (IDTA 02021) as somebody sends it, to an application: AASX or JSON.
+"""Application from a Sizing of Power Drive Trains (IDTA 02021) in AASX or JSON.
 
-Elements are found by their meanings, whatever their short ids; a number may be typed as an integer or a double. The
-motion comes out of the sections: each stretch of one acceleration is a phase, its torque that of the load's inertia,
-friction and weight, and of what acts from outside. Where `application.json`, to which the package leads, has the same
-sections, it is the application itself, with all that the template has no place for. What is not used is listed.
+Elements are found by their meanings, not by their short ids; a number may be typed as an integer or a double. The
+sections give the motion: each stretch of constant acceleration is a phase. Its torque is that of the load's inertia,
+friction and weight, and of the torques and forces from outside. Where the linked `application.json` has the same
+sections, its application is taken whole, with all inputs that the template lacks. Unused elements are listed.
 """
 
 import csv
@@ -14,6 +14,7 @@ import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from io import BytesIO
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from hpn.files.aas.derived import cycle_of
 from hpn.files.aas.sizing_ids import SIZING, meaning
 from hpn.files.aas.tree import UNREADABLE, Element, submodels_of
 from hpn.tables.sheets import RefusedError
-from hpn.words.wording import N_, Sentence
+from hpn.words.wording import N_, Sentence, first_of
 
 MAGIC, MARKS = b"PK\x03\x04", (b"aasx/", b"aasx-origin")
 IN_JSON = (b'"submodelElements"', b'"modelType"')
@@ -36,16 +37,24 @@ NO_SIZING = N_("the Asset Administration Shell has no Sizing of Power Drive Trai
 NO_MOTION = N_("the sizing has no section of a motion with its course as CSV: give the phases here")
 TOO_LARGE = N_("the package unpacks to more than {most} MB: leave out what is no sizing")
 NO_COURSE = N_("{section}: its course can’t be read: it takes numbers in SI units, under the columns {columns}")
+MISSING = N_(
+    "In no phase, since no torque follows from it: {names}. Add what it does to the load, such as the weight of a mass "
+    "off its centre, before you select."
+)
 NO_UNIT = N_("{section}: {column} is in {unit}, and has to be in SI units")
 
 
 @dataclass(frozen=True, slots=True)
 class OpenedSizing:
-    """JSON of an application, and the elements of which nothing was taken; or the problem why there is none."""
+    """JSON of an application with the unused elements, or the problem that prevents it.
+
+    `note` names those unused elements that act on the load: no phase includes their effect.
+    """
 
     text: str = ""
     unused: tuple[str, ...] = ()
     problem: Sentence | None = None
+    note: Sentence | None = None
 
 
 def is_shell(content: bytes) -> bool:
@@ -66,13 +75,13 @@ def opened(content: bytes) -> OpenedSizing:
         return OpenedSizing(problem=Sentence(N_("{field}: {message}"), {"field": pointer(at), "message": sentence}))
     except MemoryError:
         raise
-    except Exception:  # whatever the libraries meet in a broken file
+    except Exception:  # any error of the libraries on a broken file
         return OpenedSizing(problem=Sentence(UNREADABLE))
 
 
 @dataclass(slots=True)
 class _Sizing:
-    """A sizing under way: parts of its package, and the elements that were taken so far."""
+    """Sizing in progress: parts of its package, and the ids of the elements taken so far."""
 
     content: bytes
     parts: Mapping[str, bytes] = field(default_factory=dict)
@@ -84,13 +93,14 @@ class _Sizing:
         if sizing is None:
             raise RefusedError(NO_SIZING)
         sections = list(self._sections(sizing))
-        application = self._carried(sizing, sections)
+        application, note = self._carried(sizing, sections), None
         if application is None:
             if not sections:
                 raise RefusedError(NO_MOTION)
             application = Application.model_validate(self._derived(sizing, sections))
+            note = self._missing(sizing)
         text = application.model_dump_json(exclude_none=True)
-        return OpenedSizing(text, tuple(_unused(sizing, self.taken)))
+        return OpenedSizing(text, tuple(_unused(sizing, self.taken)), note=note)
 
     def _sizings(self) -> Iterator[Element]:
         for name, part in self.parts.items():
@@ -98,17 +108,25 @@ class _Sizing:
                 yield from (each for each in submodels_of(part) if SIZING in each.meanings)
 
     def _take(self, element: Element, *names: str) -> Element | None:
-        """First part along these short ids of the template, which counts as taken."""
-        found: Element | None = element
+        """First part along these short ids of the template; it counts as taken."""
+        part: Element | None = element
         for name in names:
-            found = next(found.of(meaning(name)), None) if found else None
-        if found is not None:
-            self.taken.add(id(found))
-        return found
+            part = next(part.of(meaning(name)), None) if part else None
+        if part is not None:
+            self.taken.add(id(part))
+        return part
 
     def _number(self, element: Element, name: str) -> float | None:
-        found = self._take(element, name)
-        return None if found is None or not found.value else _float(found.value, name)
+        part = self._take(element, name)
+        return None if part is None or not part.value else _float(part.value, name)
+
+    def _missing(self, sizing: Element) -> Sentence | None:
+        """Sentence about unused elements that act on the load; None where all of them are 0."""
+        groups = [sizing.of(meaning(name)) for name in ("ApplicationRequirements", "TransformationMechanism")]
+        parts = [part for element in chain(*groups) for part in _inside(element)]
+        open_ = {known for part in parts if id(part) not in self.taken and _is_given(part) for known in part.meanings}
+        outside = [name for name in ON_LOAD if meaning(name).strip() in open_]
+        return Sentence(MISSING, {"names": first_of(outside, len(outside))}) if outside else None
 
     # --- Motion -------------------------------------------------------------------------------------------------------
 
@@ -138,22 +156,29 @@ class _Sizing:
         mechanism = next(iter(part.parts), None) if (part := self._take(sizing, "TransformationMechanism")) else None
         values = {}
         if mechanism is not None:
-            values = {n: value for n in OF_MECHANISM if (value := self._number(mechanism, n)) is not None}
+            names = OF_MECHANISM if any(each.kind == "LinearSection" for each in sections) else OF_ROTATION
+            values = {n: value for n in names if (value := self._number(mechanism, n)) is not None}
+            if not 0 < values.get("Efficiency", 1.0) <= 100:
+                del values["Efficiency"]
+                self.taken.discard(id(next(mechanism.of(meaning("Efficiency")))))
         cycle = cycle_of(sections, values)
         loads = any("radial_N" in phase or "axial_N" in phase for phase in cycle["phases"])
         degrees = self._ambient(sizing)
-        asked = {"requirements": {"ambient_temperature_degC": degrees}} if degrees is not None else {}
-        return {"duty_cycle": cycle, **({"output_load": {}} if loads else {}), **asked}
+        requirements = {"requirements": {"ambient_temperature_degC": degrees}} if degrees is not None else {}
+        return {"duty_cycle": cycle, **({"output_load": {}} if loads else {}), **requirements}
 
     def _ambient(self, sizing: Element) -> float | None:
         span = self._take(sizing, "ApplicationRequirements", "Environmental", "AmbientTemperatureMotor")
-        value = span and (span.largest or span.value)
-        return _float(value, "AmbientTemperatureMotor") if value else None
+        match = _LEADING.fullmatch((span.largest or span.value or "")[:200]) if span else None
+        if match is None or match[2].strip() not in ("", "°C"):
+            self.taken.discard(id(span))
+            return None
+        return float(match[1].replace(",", "."))
 
     # --- The application that the package carries ---------------------------------------------------------------------
 
     def _carried(self, sizing: Element, sections: Sequence[MotionSection]) -> Application | None:
-        """The application of `application.json` where its motion is that of the sections; None for any other."""
+        """Application of `application.json` where its motion is that of the sections; None for any other."""
         information = next(sizing.of(meaning("SizingProjectInformation")), None)
         for link in information.of(meaning("SizingProjectLink")) if information else ():
             content = self.parts.get((link.value or "").lstrip("/"))
@@ -171,17 +196,21 @@ class _Sizing:
 
 CONSTANTS = (
     *("FrictionTorque", "AxialForce", "RadialForce", "MomentOfInertiaOfLoad", "LoadTorque"),
-    *("FrictionCoefficient", "FrictionForce", "CompensationForce", "LoadMass", "LoadSideForce", "CounterMass"),
+    *("FrictionCoefficient", "FrictionForce", "LoadMass", "LoadSideForce", "CounterMass"),
 )
-"""Elements that hold for a whole section."""
-OF_MECHANISM = (
-    *("Efficiency", "InertiaMotorSide", "NoLoadTorque", "InclinationAngle", "FrictionCoefficient"),
-    *("FeedConstant", "DiameterPinion"),
+"""Elements that are constant over a section."""
+OF_ROTATION = ("Efficiency", "InertiaMotorSide", "NoLoadTorque")
+OF_MECHANISM = (*OF_ROTATION, "InclinationAngle", "FrictionCoefficient", "FeedConstant", "DiameterPinion")
+"""Elements read of a mechanism, with rotative sections only and with linear ones."""
+
+ON_LOAD = (
+    *("StaticEccentricity", "InclinationAngle", "CompensationForce", "LeverArmAxialForce", "LeverArmRadialForce"),
+    *("HelixAngle", "Efficiency"),
 )
-"""Elements that are read of a mechanism."""
+"""Elements that change the load: named in a note where they were not taken."""
 
 SAME = 1e-9
-"""Relative difference below which two courses are the same: whoever hands them on may round."""
+"""Relative difference below which two courses are the same: other tools may round."""
 
 
 def _is_same(one: MotionSection, other: MotionSection) -> bool:
@@ -196,7 +225,7 @@ def _is_same(one: MotionSection, other: MotionSection) -> bool:
 
 
 def _unused(element: Element, taken: set[int], path: str = "") -> Iterator[str]:
-    """Paths of elements in which nothing was taken."""
+    """Paths of unused elements: those without a taken element inside."""
     for part in element.parts:
         if not (part.name or part.meanings):
             continue
@@ -219,34 +248,54 @@ def _has_taken(element: Element, taken: set[int]) -> bool:
 def _unpacked(content: bytes) -> Mapping[str, bytes]:
     with zipfile.ZipFile(BytesIO(content)) as package:
         entries = package.infolist()
-        # The zip module unpacks no more of a part than is declared here.
+        # The zip module unpacks no more of a part than its declared size.
         if len(entries) > MOST_PARTS or sum(entry.file_size for entry in entries) > MOST_BYTES:
             raise RefusedError(TOO_LARGE, most=MOST_BYTES // 1_000_000)
         return {entry.filename.lstrip("/"): package.read(entry) for entry in entries}
 
 
 _LEADING = re.compile(r"\s*([-+]?[0-9]{1,40}(?:[.,][0-9]{1,40})?(?:[eE][-+]?[0-9]{1,3})?)\s*(.{0,40})", re.S)
-SI = {"", "s", "rad", "rad/s", "rad/s²", "rad/s^2", "m", "m/s", "m/s²", "m/s^2", "N", "Nm", "kg", "kg m²", "kgm²", "%"}
+SI = {
+    *("", "s", "rad", "rad/s", "rad/s²", "rad/s^2", "m", "m/s", "m/s²", "m/s^2", "m/rev", "N", "Nm", "N·m", "N m"),
+    *("kg", "kg m²", "kgm²", "kg·m²", "kg m^2", "kgm^2", "kg*m^2", "%", "1"),
+}
 
 
 def _float(text: str, name: str) -> float:
-    """A number, an integer or not, with or without its unit in SI."""
-    found = _LEADING.fullmatch(text[:200])
-    value = float(found[1].replace(",", ".")) if found else math.nan
-    if not math.isfinite(value) or found is None:
+    """Number, integer or not, with or without its SI unit; raises RefusedError for any other text."""
+    match = _LEADING.fullmatch(text[:200])
+    value = float(match[1].replace(",", ".")) if match else math.nan
+    if not math.isfinite(value) or match is None:
         raise RefusedError(N_("{field}: {value} is no number"), field=name, value=repr(text[:40]))
+    if match[2].strip() not in SI:
+        raise RefusedError(N_("{field} is in {unit}, and has to be in SI units"), field=name, unit=repr(match[2]))
     return value
 
 
+def _is_given(element: Element) -> bool:
+    """True for an element with a value other than 0, and for any efficiency: a 0 there is a share cut to an integer."""
+    match = _LEADING.fullmatch((element.value or "")[:200])
+    counts = match is None or float(match[1].replace(",", ".")) != 0 or meaning("Efficiency") in element.meanings
+    return bool(element.value) and counts
+
+
+def _inside(element: Element) -> Iterator[Element]:
+    """Elements inside another, at any depth."""
+    for part in element.parts:
+        yield part
+        yield from _inside(part)
+
+
 def _columns_of(described: Element, section: str) -> dict[str, int]:
-    """Columns that the metadata of a section name, and the element of each; raises where one is not in SI units."""
+    """Columns in the metadata of a section, with the ids of their elements; raises RefusedError unless all are
+    in SI."""
     known = {}
     for part in described.parts:
         name = next((name for name in NAMED if meaning(name).strip() in part.meanings), None)
         if name is None:
             continue
-        found = _LEADING.fullmatch(part.value or "1")
-        if found is None or found[2].strip() not in SI or float(found[1].replace(",", ".")) != 1:
+        match = _LEADING.fullmatch(part.value or "1")
+        if match is None or match[2].strip() not in SI or float(match[1].replace(",", ".")) != 1:
             raise RefusedError(NO_UNIT, section=section, column=name, unit=repr((part.value or "")[:40]))
         known[name] = id(part)
     return known

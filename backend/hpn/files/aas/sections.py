@@ -14,7 +14,7 @@ CSV_TYPE = "text/csv"
 
 
 def number(name: str, value: float) -> model.Property:
-    """A quantity of the template, as a double."""
+    """Quantity of the template, as a double."""
     ref: model.Reference = reference(meaning(name))
     if name in CONCEPTS:
         key = model.Key(model.KeyTypes.CONCEPT_DESCRIPTION, meaning(name))
@@ -23,7 +23,7 @@ def number(name: str, value: float) -> model.Property:
 
 
 def elements_of(sections: Iterable[tuple[MotionSection, str]]) -> Iterator[model.SubmodelElementCollection]:
-    """Collections of sections, each with the place of its file in the package."""
+    """Collections of sections; a section comes with the path of its file in the package."""
     for place, (section, path) in enumerate(sections, 1):
         columns = [number(name, 1.0) for name in section.columns]
         yield group(

@@ -1,9 +1,9 @@
-"""`PowerDriveTrainSizing` by IDTA 02021-1-0-1: what was asked and what was answered, as sizing tools exchange it.
+"""`PowerDriveTrainSizing` by IDTA 02021-1-0-1: application and answer in the form that sizing tools exchange.
 
-Short ids and meanings are those of the template to the letter, spelling faults among them: a reader looks for those.
-The template types 142 real quantities as integers; here they are doubles, without which hardly a figure would be right.
-What it has no place for is in `application.json`, to which `SizingProjectLink` leads. `UsageProfile` is left out, since
-nobody is asked for it. Torques and forces act on the load from outside: what the gear has to give is their negative.
+Short ids and meanings are those of the template letter by letter, with its spelling mistakes: readers look for those.
+The template types 142 real quantities as integers; here they are doubles, since hardly any figure is whole. Inputs
+without a place in the template are in `application.json`, to which `SizingProjectLink` leads. `UsageProfile` is left
+out, since the user is not asked for it. Torques and forces act on the load from outside: the gear's are their negative.
 """
 
 import math
@@ -16,7 +16,7 @@ from hpn.account.account import Account
 from hpn.application import Application
 from hpn.application.motion import LinearMotion, RotaryMotion
 from hpn.engine.candidates import reason_of
-from hpn.files.aas.concepts import reference, told, urn
+from hpn.files.aas.concepts import reference, translations, urn
 from hpn.files.aas.courses import sections_of
 from hpn.files.aas.elements import NOT_GIVEN, group, template, text, words
 from hpn.files.aas.sections import elements_of, number
@@ -59,11 +59,11 @@ def _place(number: int) -> str:
 
 
 def sizing(export: Export) -> model.Submodel:
-    """The submodel of an export."""
+    """Submodel of an export."""
     moment = dated(export)
     parts = [
         *([_information(export, moment)] if moment else []),
-        _asked(export),
+        _requirements(export),
         *_mechanism(export.application),
         _answered(export),
     ]
@@ -107,10 +107,10 @@ def _information(export: Export, moment: datetime) -> model.SubmodelElementColle
     )
 
 
-# --- What was asked ---------------------------------------------------------------------------------------------------
+# --- Requirements -----------------------------------------------------------------------------------------------------
 
 
-def _asked(export: Export) -> model.SubmodelElementCollection:
+def _requirements(export: Export) -> model.SubmodelElementCollection:
     application = export.application
     sections = elements_of((each, _place(k)) for k, each in enumerate(sections_of(application.duty_cycle), 1))
     name = [_text("MotionPatternName", export.heading.title)] if export.heading.title else []
@@ -171,7 +171,7 @@ def _of_linear(motion: LinearMotion, application: Application) -> dict[str, floa
     return values
 
 
-# --- What was answered ------------------------------------------------------------------------------------------------
+# --- Answer -----------------------------------------------------------------------------------------------------------
 
 
 def _answered(export: Export) -> model.SubmodelElementCollection:
@@ -194,17 +194,17 @@ def _entity(name: str, statements: Statements) -> model.Entity:
 
 
 def _numbers(values: Mapping[str, float | None]) -> Statements:
-    """Quantities that have a value."""
+    """Quantities with a value."""
     return [number(name, value) for name, value in values.items() if value is not None]
 
 
 def _system(account: Account) -> Statements:
     """Inertias at the gear's output, and the emergency stop by the brake."""
     candidate, application = account.candidate, account.equipped
-    asked = application.requirements if application else None
-    typed = asked.load_inertia_kgm2 if asked else None
+    requirements = application.requirements if application else None
+    typed = requirements.load_inertia_kgm2 if requirements else None
     load = account.selection.duty.load_inertia_kgm2 or typed
-    motor = asked.motor.inertia_kgm2 if asked and asked.motor else None
+    motor = requirements.motor.inertia_kgm2 if requirements and requirements.motor else None
     own = None if motor is None else motor * candidate.ratio**2
     angle, lasting = (_figure(account, name) for name in ("stopping_angle_deg", "stopping_time_s"))
     brake = application.emergency_stop.brake if application and application.emergency_stop else None
@@ -221,7 +221,7 @@ def _system(account: Account) -> Statements:
 
 
 def _figure(account: Account, name: str) -> float | None:
-    """A figure of the gear; None too of one that a kept answer lacks."""
+    """Figure of the gear; None also where a saved answer lacks it."""
     line = account.line(f"candidate.{name}")
     return line.value if line is not None and isinstance(line.value, float) else None
 
@@ -279,19 +279,23 @@ def _motor(account: Account) -> Iterator[model.Entity]:
 
 
 def _messages(export: Export) -> model.SubmodelElementCollection:
-    """The verdict on the gear, an error where it is rejected and a warning where it is not rated, and every notice."""
+    """Message with the verdict (an error for a rejected gear, a warning for an unrated one), and one for each
+    notice."""
     candidate = export.candidate
     criticality = {"suitable": "Information", "unrated": "Warning", "unsuitable": "Error"}[candidate.status]
-    said: list[tuple[str, Sentence]] = [
+    texts: list[tuple[str, Sentence]] = [
         (criticality, reason_of(candidate, export.account.utilisation)),
         *(("Information", notice.sentence) for notice in export.selection.notices),
     ]
     messages = [
         group(
             f"Message_{place}",
-            [_text("CriticalityOfMessage", level), words("MessageText", told(sentence), meaning("MessageText"))],
+            [
+                _text("CriticalityOfMessage", level),
+                words("MessageText", translations(sentence), meaning("MessageText")),
+            ],
             meaning("Message"),
         )
-        for place, (level, sentence) in enumerate(said, 1)
+        for place, (level, sentence) in enumerate(texts, 1)
     ]
     return _group("Messages", messages)

@@ -1,7 +1,7 @@
-"""Meanings of the elements of IDTA 02021-1-0-1, to the letter of its template, by their short ids.
+"""Meanings of the elements of IDTA 02021-1-0-1 by their short ids, letter by letter as in its template.
 
-Most are an address with the short id in it. The template has some as references to concept descriptions; a reader
-compares the addresses alone, without the blanks around them.
+Most meanings are an address with the short id in it. The template has some as references to concept descriptions; a
+reader compares only the addresses, without the blanks around them.
 """
 
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ BASE = "https://admin-shell.io/idta/PowerDriveTrainSizing/"
 SIZING = BASE + "1/0"
 TEMPLATE = "https://admin-shell.io/idta/SubmodelTemplate/SizingofPowerDriveTrains/1/0"
 ASSET = "https://admin-shell.io/idta/SelfManagedEntity/1/0"
-"""Asset of a mechanism, as the template names it."""
+"""Asset of a mechanism in the template."""
 
 _OTHERS: Mapping[str, str] = {
     "SizingProjectInformation": BASE + "SizingProjectInformation1/0",
@@ -31,7 +31,7 @@ _OTHERS: Mapping[str, str] = {
 CONCEPTS = frozenset(
     ("StaticEccentricity", "CentroidAngle", "DiameterPinion", "HelixAngle", "MovingPart", "MainComponentType")
 )
-"""Elements whose meaning the template has as a reference to a concept description."""
+"""Elements whose meaning is a reference to a concept description in the template."""
 
 
 def meaning(name: str) -> str:

@@ -1,10 +1,10 @@
-"""The Asset Administration Shell of a selection: one package with technical data, sizing and every check.
+"""Asset Administration Shell of a selection: one package with technical data, sizing and every check.
 
 `TechnicalData` and `PowerDriveTrainSizing` follow templates of IDTA; `SelectionResult` is ours, since no registered
 template has the checks. Beside them lie the parts that every file carries, the motion as CSV, and the report.
 
-The library writes metamodel 3.1, whose elements are those of 3.0 as far as they are used here: the namespace tells
-which one a package claims. Most other tools read 3.0 alone.
+The library writes metamodel 3.1. The elements used here are the same in 3.0; only the namespace tells the version that
+a package claims. Most other tools read only 3.0.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,20 +18,21 @@ from pyecma376_2.core_properties import OPCCoreProperties
 
 from hpn.account.account import UNLIMITED, CheckLine
 from hpn.account.lines import Line, LineTable, Value
+from hpn.files import formats
 from hpn.files.aas import Metamodel
-from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, reference, texts, told, urn
+from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, reference, texts, translations, urn
 from hpn.files.aas.sections import CSV_TYPE
 from hpn.files.aas.sizing import files_of, sizing
 from hpn.files.aas.technical import technical_data
 from hpn.files.carried import APPLICATION, DOCUMENT, RESULT, carried
-from hpn.files.export import DIGITS, LOSS_FREE, Export, made_by
+from hpn.files.export import DIGITS, LOSS_FREE, Export
 from hpn.installed import has_extra
 from hpn.words.reader import Reader
 from hpn.words.units import symbol_of
 from hpn.words.wording import Sentence
 
 VARYING = ("peak_torque_Nm", "peak_speed_rpm", "rms_torque_Nm")
-"""Figures of a phase in which torque or speed varies."""
+"""Figures of a phase with varying torque or speed."""
 
 WRITTEN: Metamodel = "3.1"
 NAMESPACES: Mapping[Metamodel, bytes] = {
@@ -41,18 +42,18 @@ NAMESPACES: Mapping[Metamodel, bytes] = {
 
 DATA_PART, PARTS = "/aasx/data.xml", "/aasx/"
 CARRIED = {APPLICATION: "Application", RESULT: "Result", DOCUMENT: "Document"}
-"""Parts that a package carries as JSON, and what the submodel calls them."""
+"""Parts that a package carries as JSON, and their short ids in the submodel."""
 
 REPORT, PDF_TYPE = PARTS + "report.pdf", "application/pdf"
 
 FIRST_DATE = (1980, 1, 1, 0, 0, 0)
-"""Earliest time that a zip entry can have; the content says when the selection was saved."""
+"""Earliest time that a zip entry can have; the moment of saving stands in the content."""
 
 
 def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
-    """The .aasx package on an export in a version of the metamodel; the same bytes for the same selection.
+    """AASX package of an export in a version of the metamodel; the same bytes for the same selection.
 
-    The report is in it where its extra is installed.
+    It contains the report where the report's extra is installed.
     """
     files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
     for name, part in carried(export, Reader()).items():
@@ -60,7 +61,7 @@ def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
     for path, course in files_of(export).items():
         files.add_file(path, BytesIO(course), CSV_TYPE)
     if has_extra("report"):
-        files.add_file(REPORT, BytesIO(made_by("hpn.files.report.pdf:pdf", export, Reader(digits=DIGITS))), PDF_TYPE)
+        files.add_file(REPORT, BytesIO(formats.PDF.made(export, Reader(digits=DIGITS))), PDF_TYPE)
     packed = BytesIO()
     with aasx.AASXWriter(packed, failsafe=False) as writer:
         writer.write_core_properties(_properties(export))
@@ -88,7 +89,7 @@ def environment(export: Export) -> model.DictIdentifiableStore[model.Identifiabl
 
 
 class _InOrder(set[model.ModelReference[model.Submodel]]):
-    """A set that is always written in the same order, so that equal packages have equal bytes."""
+    """Set that is always written in the same order, so that equal packages have equal bytes."""
 
     def __iter__(self) -> Iterator[model.ModelReference[model.Submodel]]:
         return iter(sorted(super().__iter__(), key=str))
@@ -102,7 +103,7 @@ def _selection_result(export: Export) -> model.Submodel:
         *_texts(export),
         *(model.File(id_short, "application/json", PARTS + name) for name, id_short in CARRIED.items()),
         *([model.File("Report", PDF_TYPE, REPORT)] if has_extra("report") else []),
-        model.SubmodelElementCollection("Duty", _duty(export)),
+        model.SubmodelElementCollection("Duty", _properties_of({one.field: one.value for one in export.account.cycle})),
         *_cycle(export),
         model.SubmodelElementCollection("Figures", _calculated(export)),
         model.SubmodelElementCollection("Checks", [_check(check) for check in export.account.checks]),
@@ -140,45 +141,33 @@ def _texts(export: Export) -> Iterable[model.Property]:
 
 
 MOST_ITEMS = 100
-"""Moves or phases of which each stands in the submodel; of more the files have them all."""
-
-
-def _duty(export: Export) -> list[model.Property]:
-    """Figures of the cycle; of a motion also the inertia of its load."""
-    return _properties_of({_name(line): line.value for line in export.account.cycle})
+"""Most moves or phases in the submodel one by one; with more, only the files have them."""
 
 
 def _cycle(export: Export) -> Iterable[model.SubmodelElementCollection]:
-    """A motion as it was given, and the phases where torque or speed vary in them, or where they have names."""
+    """Motion as it was given, and the phases of a motion, with names, or with varying torque or speed."""
     account, phases = export.account, export.account.phases
     if account.moves is not None:
-        mechanism = model.SubmodelElementCollection("Mechanism", _said(account.mechanism))
+        mechanism = model.SubmodelElementCollection("Mechanism", _figures(account.mechanism))
         yield model.SubmodelElementCollection("Motion", [mechanism, *_numbered("Move", account.moves)])
-    if phases and (account.moves or any(phases.names.values) or any(_name(c.head) in VARYING for c in phases.columns)):
+    if phases and (account.moves or any(phases.names.values) or any(c.head.field in VARYING for c in phases.columns)):
         yield model.SubmodelElementCollection("Phases", [*_numbered("Phase", phases)])
 
 
 def _numbered(name: str, table: LineTable) -> Iterable[model.SubmodelElement]:
-    """How many rows there are, and each of them unless they are very many."""
+    """Number of rows, and each row up to MOST_ITEMS."""
     yield model.Property("Count", int, len(table))
     if len(table) <= MOST_ITEMS:
         for place in range(len(table)):
-            yield model.SubmodelElementCollection(f"{name}_{place + 1}", _said(table.row(place)))
+            yield model.SubmodelElementCollection(f"{name}_{place + 1}", _figures(table.row(place)))
 
 
-def _said(lines: Iterable[Line]) -> list[model.Property]:
+def _figures(lines: Iterable[Line]) -> list[model.Property]:
     """Properties of a mechanism, a move or a phase, each with its name and unit in words."""
     return [
-        model.Property(
-            _name(line), type(line.value), line.value, display_name=model.MultiLanguageNameType(_named(line))
-        )
+        model.Property(line.field, type(line.value), line.value, display_name=model.MultiLanguageNameType(_named(line)))
         for line in lines
     ]
-
-
-def _name(line: Line) -> str:
-    """Field of a line, by which a property is called."""
-    return line.code.rpartition(".")[2]
 
 
 def _named(line: Line) -> dict[str, str]:
@@ -191,8 +180,8 @@ def _calculated(export: Export) -> list[model.Property]:
     """Figures of the candidate; motor torques without an efficiency are described as a lower bound."""
     candidate, figures = export.candidate, export.account.figures
     values: dict[str, Value | None] = {name: getattr(candidate, name) for name in ("ratio", "stages", "utilisation")}
-    values |= {_name(line): line.value for line in figures if line.value != UNLIMITED}
-    loss_free = (_name(line) for line in figures if line.is_lower_bound)
+    values |= {line.field: line.value for line in figures if line.value != UNLIMITED}
+    loss_free = (line.field for line in figures if line.is_lower_bound)
     return _properties_of(values, dict.fromkeys(loss_free, Sentence(LOSS_FREE)))
 
 
@@ -214,7 +203,9 @@ def _check(check: CheckLine) -> model.SubmodelElementCollection:
 
 def _notices(export: Export) -> Iterable[model.MultiLanguageProperty]:
     return [
-        model.MultiLanguageProperty(f"{notice.code}_{number}", model.MultiLanguageTextType(told(notice.sentence)))
+        model.MultiLanguageProperty(
+            f"{notice.code}_{number}", model.MultiLanguageTextType(translations(notice.sentence))
+        )
         for number, notice in enumerate(export.selection.notices, 1)
     ]
 
@@ -222,7 +213,7 @@ def _notices(export: Export) -> Iterable[model.MultiLanguageProperty]:
 def _properties_of(
     figures: Mapping[str, Value | None], described: Mapping[str, Sentence] | None = None
 ) -> list[model.Property]:
-    """Properties of the figures that have a value, described by their source or by what is to be known of them."""
+    """Properties of the figures that have a value, with descriptions from `described`."""
     described = described or {}
     return [
         model.Property(
@@ -230,7 +221,7 @@ def _properties_of(
             type(value),
             value,
             semantic_id=reference(concept_id(name)),
-            description=model.MultiLanguageTextType(told(described[name])) if name in described else None,
+            description=model.MultiLanguageTextType(translations(described[name])) if name in described else None,
         )
         for name, value in figures.items()
         if value is not None
@@ -241,7 +232,7 @@ def _properties_of(
 
 
 def _properties(export: Export) -> OPCCoreProperties:
-    """Author and title of the package; its time stands in the content, where no library chooses the prefix."""
+    """Author and title of the package. Its time stands in the content: here a library would choose the XML prefix."""
     properties = OPCCoreProperties()  # type: ignore[no-untyped-call]
     properties.creator = "HPN Select"
     properties.title = export.heading.title or None
@@ -249,7 +240,7 @@ def _properties(export: Export) -> OPCCoreProperties:
 
 
 def _finished(packed: bytes, metamodel: Metamodel) -> bytes:
-    """The same package in the namespace of a metamodel, and without the time of its making."""
+    """Package in the namespace of a metamodel, without the time of its making."""
     result = BytesIO()
     with ZipFile(BytesIO(packed)) as source, ZipFile(result, "w", ZIP_DEFLATED) as target:
         for name in source.namelist():

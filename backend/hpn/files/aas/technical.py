@@ -1,8 +1,8 @@
 """`TechnicalData` by IDTA 02003-2-0-1: published figures of the selected gear, in the sections of the catalogue's page.
 
-Article number and order code are the designation where nobody has saved an ordering code: the handbook prints no
-article number, and a full code names output version and motor adapter too; their descriptions say so. A selection
-without a date has no `FurtherInformation`, which the template holds to one.
+Without a saved ordering code, article number and order code are the designation, and their descriptions say so: the
+handbook prints no article number, and a full code names output version and motor adapter too. A selection without a
+date has no `FurtherInformation`, since that section of the template requires a date.
 """
 
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ from hpn.account.lines import Line
 from hpn.account.published import grouped, line_of
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import BY_CODE
-from hpn.files.aas.concepts import concept_id, published, reference, told, urn
+from hpn.files.aas.concepts import concept_id, published, reference, translations, urn
 from hpn.files.aas.elements import group, template, text, words
 from hpn.files.export import Export
 from hpn.words.units import symbol_of
@@ -31,9 +31,9 @@ NAME, DESIGNATION, ARTICLE, ORDER = (
     *("0173-1#02-AAO677#004", "0173-1#02-AAW338#003", "0173-1#02-AAO676#005"),
     "0173-1#02-AAO227#004",
 )
-"""Elements of the template by the semantic ids that it gives."""
+"""Semantic ids of the template's elements."""
 ARBITRARY = "https://admin-shell.io/SMT/General/Arbitrary"
-"""Meaning of a section, which the template leaves to its user."""
+"""Meaning of a section; the template leaves it to its user."""
 
 ARTICLE_NUMBER = {
     "en": "Designation of the gear: the manufacturer’s engineering data print no article number.",
@@ -52,11 +52,11 @@ SAYS = {
     "keine Aussage des Herstellers.",
 }
 KINEMATICS, RATINGS = "Kinematics", "Ratings"
-"""Sections of what no page lists in a group: size and ratio, and what a kept answer says without its catalogue."""
+"""Sections that no page has as a group: size and ratio, and the figures of a saved answer without its catalogue."""
 
 
 def technical_data(export: Export) -> model.Submodel:
-    """The submodel of an export whose gear is suitable."""
+    """Submodel of an export whose gear is suitable."""
     return model.Submodel(
         urn("technical-data", export.link),
         [_general(export), _areas(export), *_further(export)],
@@ -67,7 +67,7 @@ def technical_data(export: Export) -> model.Submodel:
 
 
 def order_code(export: Export) -> str:
-    """Ordering code that was saved, else the designation."""
+    """Saved ordering code, else the designation."""
     return export.heading.ordering_code or export.candidate.designation
 
 
@@ -89,7 +89,7 @@ def _general(export: Export) -> model.SubmodelElementCollection:
 
 
 def _areas(export: Export) -> model.SubmodelElementList[model.SubmodelElementCollection]:
-    """The list of one area, whose sections hold the published figures; what is not published is left out."""
+    """List of one area, whose sections hold the published figures; unpublished ones are left out."""
     sections = [group(name, properties, ARBITRARY) for name, properties in _sections(export) if properties]
     return model.SubmodelElementList(
         "TechnicalPropertyAreas",
@@ -102,7 +102,7 @@ def _areas(export: Export) -> model.SubmodelElementList[model.SubmodelElementCol
 
 
 def _sections(export: Export) -> Iterator[tuple[str, list[model.Property]]]:
-    """Short id of each section and its figures."""
+    """Short ids of sections, each with its figures."""
     candidate, gear = export.candidate, export.account.gear
     known: dict[str, str | float] = {"size": candidate.size, "stages": candidate.stages}
     kinematics = [_property(name, value) for name, value in known.items()]
@@ -112,7 +112,7 @@ def _sections(export: Export) -> Iterator[tuple[str, list[model.Property]]]:
         yield RATINGS, [_property(name, value) for name, value in _limits(candidate)]
         return
     for title, lines in grouped(export.account.published, lambda line: line.code):
-        yield short_id(title), [_property(_name(line), line.value, line) for line in lines if line.value is not None]
+        yield short_id(title), [_property(line.field, line.value, line) for line in lines if line.value is not None]
 
 
 def short_id(title: str) -> str:
@@ -122,7 +122,7 @@ def short_id(title: str) -> str:
 
 
 def _limits(candidate: Candidate) -> Iterator[tuple[str, float]]:
-    """Published figures that are the limit of a load check: what a kept answer says without its catalogue."""
+    """Published figures from the limits of load checks: all that a saved answer has without its catalogue."""
     for check in candidate.checks:
         known = BY_CODE.get(check.code)
         own = known and known.group == "load" and known.limited_by and known.unit == symbol_of(known.limited_by)
@@ -131,19 +131,15 @@ def _limits(candidate: Candidate) -> Iterator[tuple[str, float]]:
 
 
 def _property(name: str, value: object, line: Line | None = None) -> model.Property:
-    """A figure with its source."""
+    """Property of a figure, with its source as the description."""
     name, source = published(name), line.source if line else None
     return model.Property(
         name,
         type(value),
         value,
         semantic_id=reference(concept_id(name)),
-        description=model.MultiLanguageTextType(told(source)) if source else None,
+        description=model.MultiLanguageTextType(translations(source)) if source else None,
     )
-
-
-def _name(line: Line) -> str:
-    return line.code.rpartition(".")[2]
 
 
 def _further(export: Export) -> Iterator[model.SubmodelElementCollection]:
@@ -154,7 +150,7 @@ def _further(export: Export) -> Iterator[model.SubmodelElementCollection]:
 
 
 def dated(export: Export) -> datetime | None:
-    """When a selection was saved, else the day on which its files are made; None of one that has neither."""
+    """Moment of saving, else the day on which the files are made, in UTC; None without either."""
     if export.created is not None:
         return export.created.astimezone(UTC)
     if export.made is None:

@@ -1,4 +1,4 @@
-"""Elements of a submodel that a stranger sends, out of XML or JSON, within bounds of number and depth."""
+"""Elements of a submodel from an untrusted file, in XML or JSON, with bounds on number and depth."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -17,7 +17,7 @@ UNREADABLE = N_("the Asset Administration Shell can’t be read: export it as AA
 
 @dataclass(slots=True, eq=False)
 class Element:
-    """An element: short id, meanings without blanks around them, value or range, and what is in it."""
+    """Element: short id, meanings without blanks around them, value or range, and the elements inside."""
 
     name: str = ""
     meanings: tuple[str, ...] = ()
@@ -26,7 +26,7 @@ class Element:
     parts: list["Element"] = field(default_factory=list)
 
     def of(self, meaning: str) -> Iterator["Element"]:
-        """Parts of a meaning."""
+        """Parts with a meaning."""
         wanted = meaning.strip()
         return (part for part in self.parts if wanted in part.meanings)
 
@@ -43,14 +43,14 @@ def submodels_of(content: bytes) -> list[Element]:
 
 @dataclass(slots=True, eq=False)
 class _Node:
-    """A tag without its namespace, its text and what is in it."""
+    """XML tag without its namespace, its text and the nodes inside."""
 
     tag: str
     text: list[str] = field(default_factory=list)
     nodes: list["_Node"] = field(default_factory=list)
 
     def all_of(self, tag: str) -> Iterator["_Node"]:
-        """Nodes of a tag, at any depth."""
+        """Nodes with a tag, at any depth."""
         for node in self.nodes:
             if node.tag == tag:
                 yield node
@@ -59,7 +59,7 @@ class _Node:
     def first(self, tag: str) -> "_Node | None":
         return next((node for node in self.nodes if node.tag == tag), None)
 
-    def told(self, tag: str) -> str | None:
+    def text_of(self, tag: str) -> str | None:
         node = self.first(tag)
         return None if node is None else "".join(node.text).strip()
 
@@ -97,10 +97,10 @@ def _of_node(node: _Node) -> Element:
     meanings = tuple("".join(each.text).strip() for each in semantic.all_of("value")) if semantic else ()
     inside = [part for tag in ("submodelElements", "value", "statements") if (part := node.first(tag))]
     return Element(
-        node.told("idShort") or "",
+        node.text_of("idShort") or "",
         meanings,
-        node.told("min") or node.told("value"),
-        node.told("max"),
+        node.text_of("min") or node.text_of("value"),
+        node.text_of("max"),
         [_of_node(part) for parts in inside for part in parts.nodes],
     )
 
@@ -113,26 +113,28 @@ def _in_json(content: bytes) -> Iterator[Element]:
         value = json.loads(content)
     except (ValueError, RecursionError):
         raise RefusedError(UNREADABLE) from None
-    given = value.get("submodels", [value]) if isinstance(value, dict) else []
-    for submodel in given if isinstance(given, list) else []:
+    submodels = value.get("submodels", [value]) if isinstance(value, dict) else []
+    for submodel in submodels if isinstance(submodels, list) else []:
         if isinstance(submodel, dict):
             yield _of_object(submodel, [0], 0)
 
 
-def _of_object(given: Mapping[str, Any], count: list[int], depth: int) -> Element:
+def _of_object(submodel: Mapping[str, Any], count: list[int], depth: int) -> Element:
     count[0] += 1
     if count[0] > MOST_ELEMENTS or depth > MOST_DEPTH:
         raise RefusedError(TOO_MUCH)
-    semantic = given.get("semanticId")
+    semantic = submodel.get("semanticId")
     keys = semantic.get("keys") if isinstance(semantic, dict) else None
     meanings = [key.get("value") for key in keys if isinstance(key, dict)] if isinstance(keys, list) else []
-    inside = [given[name] for name in ("submodelElements", "value", "statements") if isinstance(given.get(name), list)]
-    value = given.get("min", given.get("value"))
+    inside = [
+        submodel[name] for name in ("submodelElements", "value", "statements") if isinstance(submodel.get(name), list)
+    ]
+    value = submodel.get("min", submodel.get("value"))
     return Element(
-        _text(given.get("idShort")) or "",
+        _text(submodel.get("idShort")) or "",
         tuple(text.strip() for text in map(_text, meanings) if text),
         _text(value),
-        _text(given.get("max")),
+        _text(submodel.get("max")),
         [_of_object(part, count, depth + 1) for parts in inside for part in parts if isinstance(part, dict)],
     )
 

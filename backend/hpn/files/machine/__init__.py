@@ -1,1 +1,1 @@
-"""A machine as files: its report and gear list, its axes as a table, and what differs between two of its revisions."""
+"""Files of a machine: its report and gear list, its axes as a table, and differences between two of its revisions."""

@@ -1,4 +1,4 @@
-"""A page of a machine's report: one axis, its verdict, what is asked, its checks and the gears beside."""
+"""Page of one axis in a machine's report: its verdict, inputs, checks and the next gears."""
 
 from typing import Any
 
@@ -10,14 +10,14 @@ from hpn.files.export import Export
 from hpn.files.machine.words import faults_of, gear_phrase
 from hpn.files.report import plots
 from hpn.files.report.checks import limits
-from hpn.files.report.content import asked, parts, titles
+from hpn.files.report.content import inputs, parts, titles
 from hpn.files.report.verdict import beside, verdict
 from hpn.words.reader import Reader
 from hpn.words.symbols import sentence
 from hpn.words.wording import N_, Sentence
 
 MOST_BESIDE = 3
-"""Gears beside that of an axis."""
+"""Most gears listed beside the axis's own."""
 
 SAVED = N_(
     "This page is calculated by engine {engine}. The revision was answered by engine {then}, which gives {answer}."
@@ -30,7 +30,7 @@ QUANTITY = N_("quantity {quantity}")
 def axis_page(
     axis: FrozenAxis, export: Export | None, place: tuple[int, int], reader: Reader, *, full: bool
 ) -> dict[str, Any]:
-    """Data of the page of an axis; `place` is where it stands, and of how many. An open one has its faults alone."""
+    """Data of an axis's page; `place` is its position, from 1, and the number of axes. An open axis has only faults."""
     notes = [
         Sentence(PLACE, {"place": place[0], "count": place[1]}),
         Sentence(QUANTITY, {"quantity": reader.exact(axis.quantity)}),
@@ -38,7 +38,7 @@ def axis_page(
     page = {
         "number": axis.number,
         "name": axis.name or "",
-        "place": " · ".join(map(reader.told, notes)),
+        "place": " · ".join(map(reader.sentence, notes)),
         "note": axis.note or "",
         "faults": faults_of(axis, reader),
         "selection": None,
@@ -57,7 +57,7 @@ def axis_page(
 def _brief(export: Export, reader: Reader) -> dict[str, Any]:
     account = export.account
     figures = (f"{line.named.symbol} {line.text(reader)}" for line in known(account.cycle) if line.named.symbol)
-    return asked(export, reader) | {
+    return inputs(export, reader) | {
         "titles": titles(export, reader),
         "verdict": verdict(export, reader),
         "cycle": plots.cycle(export, plots.pictures_of(export, reader), reader),
@@ -68,7 +68,7 @@ def _brief(export: Export, reader: Reader) -> dict[str, Any]:
 
 
 def _was(axis: FrozenAxis, export: Export, reader: Reader) -> str:
-    """Answer of a revision where its page comes to another one; blank where both are the same."""
+    """Sentence with the answer of a revision where this page's answer differs; blank where both are the same."""
     answer, candidate = axis.answer, export.candidate
     figures = ((answer.designation, candidate.designation), (answer.status, candidate.status))
     if all(is_same(*pair) for pair in (*figures, (answer.utilisation, candidate.utilisation))):
@@ -79,4 +79,4 @@ def _was(axis: FrozenAxis, export: Export, reader: Reader) -> str:
         "then": answer.engine_version,
         "answer": f"{gear_phrase(axis, reader)}, {reader.percent(answer.utilisation, bound)}",
     }
-    return reader.told(Sentence(SAVED, values))
+    return reader.sentence(Sentence(SAVED, values))

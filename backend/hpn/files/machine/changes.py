@@ -35,12 +35,15 @@ LOST = N_("was suitable; nearest {gear}, {check}")
 WANTING = N_("no suitable gear; nearest {gear}, {check}")
 NOW_OPEN = N_("has no answer any more")
 OTHER_CHECK, LONGER = N_("{check}; was {before}"), N_("shortest life {before} → {after}")
+WORST_CASE = ("holds", "worst_governing_check")
+
+INPUT, RESULT, BOTH = N_("Input"), N_("Result"), N_("Input or result")
 ADDED, REMOVED, SAME = N_("new"), N_("removed"), N_("the same result")
 
 
 @dataclass(frozen=True)
 class DifferencesExport:
-    """Two documents to be compared by their labels, the catalogues of their answers, and where the comparison is."""
+    """Two documents to compare, with their labels, the catalogues of their answers, and the link of the comparison."""
 
     labels: tuple[str, str]
     documents: tuple[Frozen, Frozen]
@@ -61,18 +64,18 @@ class DifferencesExport:
         return one, other
 
     def sides(self, number: int) -> tuple[FrozenAxis | None, FrozenAxis | None]:
-        """An axis in both documents."""
+        """Axis of a number in both documents; None where a document lacks it."""
         return self._axes[0].get(number), self._axes[1].get(number)
 
 
 def input_lines(each: DifferentInput) -> tuple[Line, Line]:
-    """An input that differs as lines."""
+    """Both values of a different input, as lines."""
     path = path_of(each.pointer)
     return line_of(path, each.value_from), line_of(path, each.value_to)
 
 
 def answer_lines(each: DifferentAnswer, reader: Reader) -> tuple[Line, Line]:
-    """A verdict or figure that differs as lines."""
+    """Both values of a different verdict or figure, as lines."""
     named = ANSWER.get(each.field) or CANDIDATE.get(each.field) or Named(each.field)
     one, other = (_answer_line(each.field, named, value, reader) for value in (each.value_from, each.value_to))
     return one, other
@@ -89,48 +92,67 @@ def _answer_line(name: str, named: Named, value: Any, reader: Reader) -> Line:
     return Line(code, named, value, suffix_of(name) if isinstance(value, float | int) else "", "computed")
 
 
-def shown(line: Line, reader: Reader) -> str:
-    """A value as it is read, with its unit; a dash for none, and a utilisation in percent."""
+def text_of(line: Line, reader: Reader) -> str:
+    """Value as text, with its unit; a dash for none, and a utilisation in percent."""
     if line.code in ("candidate.utilisation", "candidate.worst_utilisation") and isinstance(line.value, float | int):
         return reader.percent(line.value)
     return line.text(reader) if line.value is not None else NOTHING
 
 
 Cell = tuple[str, str, str]
-"""Name of a value and the value in both documents, as they are read."""
+"""Name of a value, and its text in both documents."""
 
 
 def cells_of(axis: DifferentAxis, reader: Reader) -> list[Cell]:
-    """Inputs of an axis that differ, else its figures."""
-    return input_cells(axis.inputs, reader) or answer_cells(
-        [each for each in axis.figures if each.field != "utilisation"], reader
-    )
+    """Different inputs of an axis, else its different figures."""
+    return input_cells(axis.inputs, reader) or answer_cells(_figures(axis), reader)
+
+
+def has_results(axis: DifferentAxis) -> bool:
+    """True where the cells of an axis are figures."""
+    return not axis.inputs and bool(_figures(axis))
+
+
+def head_of(axes: Iterable[DifferentAxis]) -> str:
+    """Head of a column with the cells of axes."""
+    kinds = {has_results(axis) for axis in axes if axis.inputs or has_results(axis)}
+    return BOTH if len(kinds) == 2 else RESULT if True in kinds else INPUT
+
+
+def _figures(axis: DifferentAxis) -> list[DifferentAnswer]:
+    """Figures beside the utilisation; of a worst case that only one document has the utilisation says all."""
+    return [
+        each
+        for each in axis.figures
+        if each.field != "utilisation"
+        and (each.field not in WORST_CASE or None not in (each.value_from, each.value_to))
+    ]
 
 
 def input_cells(inputs: Iterable[DifferentInput], reader: Reader) -> list[Cell]:
-    """Inputs that differ."""
-    return [_cell(reader.told(label_of(each.pointer)), input_lines(each), reader) for each in inputs]
+    """Cells of different inputs."""
+    return [_cell(reader.sentence(label_of(each.pointer)), input_lines(each), reader) for each in inputs]
 
 
 def answer_cells(answered: Iterable[DifferentAnswer], reader: Reader) -> list[Cell]:
-    """Verdicts and figures that differ."""
+    """Cells of different verdicts and figures."""
     pairs = (answer_lines(each, reader) for each in answered)
     return [_cell(lines[0].label(reader), lines, reader) for lines in pairs]
 
 
 def _cell(name: str, lines: tuple[Line, Line], reader: Reader) -> Cell:
     one, other = lines
-    return name, shown(one, reader), shown(other, reader)
+    return name, text_of(one, reader), text_of(other, reader)
 
 
 def used(axis: FrozenAxis | None, reader: Reader) -> str:
-    """Utilisation of an axis; blank where the document lacks it."""
+    """Utilisation of an axis; blank where the document lacks the axis."""
     return reader.percent(axis.answer.utilisation, bound_of(axis)) if axis else ""
 
 
 def effect(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None], reader: Reader) -> str:
     """Effect of the differences on an axis, in words."""
-    return reader.told(_effect(axis, sides, reader))
+    return reader.sentence(_effect(axis, sides, reader))
 
 
 def _effect(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None], reader: Reader) -> Sentence:
@@ -162,5 +184,5 @@ def _lives(axis: DifferentAxis, before: FrozenAxis, after: FrozenAxis) -> dict[s
 
 
 def common_lines(export: DifferencesExport) -> Iterator[tuple[Line, Line]]:
-    """Title block and common values that differ."""
+    """Title block and common values that differ, as lines."""
     return map(input_lines, export.differences.common)

@@ -1,15 +1,18 @@
-"""Differences of two documents as PDF: what differs axis by axis, cell by cell."""
+"""Differences of two documents as PDF, axis by axis and cell by cell."""
 
 from typing import Any
 
 from hpn.documents.differences import DifferentAxis
 from hpn.documents.revision import FrozenAxis
 from hpn.files.machine.changes import (
+    RESULT,
     DifferencesExport,
     cells_of,
     common_lines,
     effect,
-    shown,
+    has_results,
+    head_of,
+    text_of,
     used,
 )
 from hpn.files.machine.inputs import label_of
@@ -21,7 +24,7 @@ from hpn.words.reader import Reader
 from hpn.words.wording import N_, Sentence
 
 MOST_AXES, MOST_CELLS = 500, 12
-"""Axes that are written out, and inputs of each; the workbook has all."""
+"""Most axes that are written out, and most inputs of each; the workbook has all."""
 
 LABELS = {
     "differs": N_("Axes that differ"),
@@ -45,12 +48,12 @@ REORDERED = N_("The axes stand in another order.")
 
 
 def pdf(export: DifferencesExport, reader: Reader) -> bytes:
-    """The report on what differs."""
+    """Report on the differences."""
     return printed("differences.typ", content(export, reader), export.heading.title.strip(), export.created)
 
 
 def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
-    """Everything that the template sets."""
+    """Data of the template."""
     data, differences, text = frame(export.heading, reader), export.differences, reader.text
     title = shortened(export.heading.title.strip() or text(UNTITLED), LONGEST_TITLE)
     arrow = " → ".join(export.labels)
@@ -61,7 +64,7 @@ def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
         "lost": reader.exact(sum(axis.lost_its_gear for axis in differences.axes)),
         "other": reader.exact(sum(axis.has_another_gear for axis in differences.axes)),
     }
-    notes = [reader.told(Sentence(COUNTS, values)) if differences.axes else text(NO_CHANGE)]
+    notes = [reader.sentence(Sentence(COUNTS, values)) if differences.axes else text(NO_CHANGE)]
     notes += [text(REORDERED)] if differences.order else []
     return data | {
         "labels": data["labels"] | {key: text(label) for key, label in LABELS.items()},
@@ -72,15 +75,16 @@ def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
         "saved": export.created is not None,
         **link_of(export.link, reader, is_saved=True, notes=LINK),
         "sides": list(export.labels),
+        "cells_head": text(head_of(differences.axes)),
         "notes": notes,
         "notices": [],
         "facts": [],
         "common": [
-            [reader.told(label_of(each.pointer)), *(shown(line, reader) for line in lines)]
+            [reader.sentence(label_of(each.pointer)), *(text_of(line, reader) for line in lines)]
             for each, lines in zip(differences.common, common_lines(export), strict=True)
         ],
         "rows": [_row(axis, export.sides(axis.number), reader) for axis in differences.axes[:MOST_AXES]],
-        "more": reader.told(Sentence(MORE_AXES, {"count": reader.exact(more)})) if more > 0 else "",
+        "more": reader.sentence(Sentence(MORE_AXES, {"count": reader.exact(more)})) if more > 0 else "",
     }
 
 
@@ -91,7 +95,8 @@ def _row(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None]
         "number": axis.number,
         "name": axis.name or "",
         "cells": [list(cell) for cell in cells[:MOST_CELLS]],
-        "more": reader.told(Sentence(MORE_CELLS, {"count": reader.exact(more)})) if more > 0 else "",
+        "cells_title": reader.text(RESULT) if has_results(axis) else "",
+        "more": reader.sentence(Sentence(MORE_CELLS, {"count": reader.exact(more)})) if more > 0 else "",
         "gears": [side.gear if side else None for side in (axis.side_from, axis.side_to)],
         "bars": [_bar(side, reader) for side in sides],
         "used": [used(side, reader) for side in sides],

@@ -1,6 +1,5 @@
-"""Differences of two documents as a workbook: axes in brief, every input and every figure that differs."""
+"""Differences of two documents as a workbook: axes in brief, and every input and figure that differs."""
 
-from collections.abc import Iterable, Iterator
 from io import BytesIO
 
 from hpn.account.lines import Line
@@ -13,11 +12,11 @@ from hpn.words.wording import N_
 
 AXIS_WIDTHS, VALUE_WIDTHS = (8, 28, 14, 14, 12, 12, 50), (8, 28, 40, 12, 22, 22, 9, 22)
 MACHINE = N_("machine")
-"""In place of the values of an axis that are the machine's."""
+"""Mark of an axis's values that it takes from the machine."""
 
 
 def workbook(export: DifferencesExport, reader: Reader) -> bytes:
-    """The workbook; the same bytes for the same documents."""
+    """Workbook of the differences; the same bytes for the same documents."""
     content = BytesIO()
     book, styles = new_book(content, export)
     for name, write in (
@@ -59,10 +58,10 @@ def _write_inputs(leaf: Leaf, export: DifferencesExport) -> None:
     _write_heads(leaf, export, N_("Input"))
     pairs = zip(export.differences.common, common_lines(export), strict=True)
     for each, lines in pairs:
-        _write_values(leaf, (None, reader.text(N_("every axis"))), reader.told(label_of(each.pointer)), lines)
+        _write_values(leaf, (None, reader.text(N_("every axis"))), reader.sentence(label_of(each.pointer)), lines)
     for axis in export.differences.axes:
         for each in axis.inputs:
-            _write_values(leaf, (axis.number, axis.name), reader.told(label_of(each.pointer)), input_lines(each))
+            _write_values(leaf, (axis.number, axis.name), reader.sentence(label_of(each.pointer)), input_lines(each))
             marks = zip(export.labels, (each.inherited_from, each.inherited_to), strict=True)
             of_machine = [f"{label}: {reader.text(MACHINE)}" for label, inherited in marks if inherited]
             leaf.row -= 1
@@ -96,11 +95,7 @@ def _write_values(leaf: Leaf, axis: tuple[int | None, str | None], label: str, l
     leaf.put(2, label)
     leaf.put(3, lines[0].named.symbol, "quiet")
     for column, line in enumerate(lines, 4):
-        leaf.put(column, line.shown(leaf.reader), "figure")
-    units = _units(lines)
+        leaf.put(column, line.value_for(leaf.reader), "figure")
+    units = (line.unit for line in lines if isinstance(line.value, float | int) and line.unit)
     leaf.put(6, leaf.reader.unit(next(units, "")), "unit")
     leaf.row += 1
-
-
-def _units(lines: Iterable[Line]) -> Iterator[str]:
-    return (line.unit for line in lines if isinstance(line.value, float | int) and line.unit)

@@ -1,4 +1,4 @@
-"""A machine as it leaves the service: the document as it was, and whole selections of the axes that get a page."""
+"""Machine for a file: its document, and whole selections of the axes with a page."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -16,15 +16,15 @@ from hpn.documents.gears import GearOrder
 from hpn.documents.revision import Frozen, FrozenAxis
 from hpn.documents.summary import Summary, order_of, summary_of
 from hpn.engine.batch import judge_batch
-from hpn.engine.selection import Judged, Selection
+from hpn.engine.selection import Judgement, Selection
 from hpn.files.export import Export, ExportTitle
 from hpn.words.wording import N_, Sentence
 
 MOST_PAGES, MOST_FULL = 500, 100
-"""Axes that get a page, or their whole calculation."""
+"""Most axes with a page, and most axes with their whole calculation."""
 
 AT_ONCE = 50
-"""Selections that are kept at a time."""
+"""Most selections in memory at a time."""
 
 _RANGE = re.compile(r"([0-9]{1,7})(?:-([0-9]{1,7}))?")
 NONE = "none"
@@ -37,10 +37,11 @@ TOO_MANY_FULL = N_("the report has the whole calculation of at most {most} axes;
 
 @dataclass(frozen=True)
 class MachineExport:
-    """A document, the catalogue of its answers, and what a reader needs to find it again.
+    """Document, the catalogue of its answers, and the data that lead a reader back to it.
 
-    `heading` has the label of the revision, none for the working copy. `created` is when that was saved, `made` the day
-    of a file of the working copy. `before` is the revision before by its label, whose differences are marked.
+    `heading` has the label of the revision, none for the working copy. `created` is the moment of that revision, `made`
+    the day of a file of the working copy. `before` is the previous revision with its label; the report marks the
+    differences from it.
     """
 
     document: Frozen
@@ -53,7 +54,7 @@ class MachineExport:
 
     @cached_property
     def summary(self) -> Summary:
-        """The machine in brief."""
+        """Machine in brief."""
         return summary_of(self.document, self.catalogue)
 
     @cached_property
@@ -63,22 +64,22 @@ class MachineExport:
 
     @cached_property
     def since(self) -> DocumentDifferences | None:
-        """Differences from the revision before; None without one."""
+        """Differences from the previous revision; None without one."""
         return differences(self.before[1], self.document) if self.before else None
 
 
 class Pages(NamedTuple):
-    """Axes that get pages of their own, in the order of the machine, and whether those are the whole calculation."""
+    """Axes with pages of their own, in the order of the machine; `full` for pages with the whole calculation."""
 
     axes: tuple[FrozenAxis, ...]
     full: bool = False
 
 
 def pages_of(document: Frozen, axes: str | None = None, *, full: bool = False) -> Pages:
-    """Axes with pages: those of a list such as `3,7-20`, by default all of them.
+    """Axes with pages: those of a list such as `3,7-20`, by default all.
 
-    Without a list a machine with more axes than may have a page gets none. Raises InputError for a list that is none,
-    that names an axis which is not there, or too many.
+    Without a list, a machine with too many axes for pages gets none. Raises InputError for an invalid list, for a list
+    that names a missing axis, and for too many axes.
     """
     most, template = (MOST_FULL, TOO_MANY_FULL) if full else (MOST_PAGES, TOO_MANY)
     if axes is None:
@@ -112,13 +113,13 @@ def _wrong(template: str, most: int = 0) -> InputError:
 def exports_of(export: MachineExport, axes: Sequence[FrozenAxis]) -> Iterator[tuple[FrozenAxis, Export | None]]:
     """Axes with their selections under the catalogue of the document; None for an axis without an answer.
 
-    No more selections are kept at a time than a few.
+    Only AT_ONCE selections are in memory at a time.
     """
     for start in range(0, len(axes), AT_ONCE):
         some = axes[start : start + AT_ONCE]
         applications = [_application(axis) for axis in some]
         sound = [application for application in applications if application is not None]
-        selections = iter(judge_batch(sound, export.catalogue, _selection))
+        selections = iter(judge_batch(sound, export.catalogue, Judgement.selection))
         for axis, application in zip(some, applications, strict=True):
             selection = None if application is None else next(selections)
             if application is None or not isinstance(selection, Selection):
@@ -127,12 +128,9 @@ def exports_of(export: MachineExport, axes: Sequence[FrozenAxis]) -> Iterator[tu
                 yield axis, _export(export, axis, application, selection)
 
 
-def _selection(judged: Judged) -> Selection:
-    return judged.selection()
-
-
 def _application(axis: FrozenAxis) -> Application | None:
-    """Application of an axis; None where it is open, or another version has answered what is none any more."""
+    """Application of an axis; None for an open axis, and for an application of another version that is no longer
+    valid."""
     if axis.answer.status == "open":
         return None
     try:

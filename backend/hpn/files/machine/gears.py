@@ -1,25 +1,62 @@
-"""The gear list of a machine as a workbook: gears to order, and every axis with its gear."""
+"""Gear list of a machine as a workbook: gears to order, and every axis with its gear."""
 
 from io import BytesIO
+from typing import NamedTuple
 
 from hpn.account.readings import life_of
-from hpn.documents.summary import gear_of
+from hpn.documents.gears import motor_of
+from hpn.documents.revision import FrozenAxis
+from hpn.documents.summary import gear_of, has_worst_case
 from hpn.files.machine.export import MachineExport
 from hpn.files.machine.words import STATUS, check_of, faults_of, ranges
 from hpn.files.workbook.sheet import LONGEST_TEXT, VERDICT_STYLES, Cell, Leaf, new_book
 from hpn.words.reader import Reader
 from hpn.words.wording import N_
 
-GEAR_HEADS = (N_("Ordering code"), N_("Gear"), N_("Axes"), N_("axes"), N_("gears"), N_("each"), N_("together"))
-AXIS_HEADS = (
-    *(N_("Number"), N_("Axis"), N_("Quantity"), N_("Gear"), N_("Ordering code"), N_("Verdict"), N_("Utilisation")),
-    *(N_("Governing check"), N_("Shortest life"), N_("Life"), N_("Weight"), N_("Note")),
+GEAR_HEADS = (
+    N_("Ordering code"),
+    N_("Gear"),
+    N_("Axes"),
+    N_("axes"),
+    N_("gears"),
+    N_("each"),
+    N_("together"),
+    N_("Motors"),
 )
-GEAR_WIDTHS, AXIS_WIDTHS = (26, 14, 44, 9, 9, 12, 12), (8, 28, 9, 13, 24, 14, 11, 26, 14, 16, 11, 40)
+GEAR_WIDTHS = (26, 14, 44, 9, 9, 12, 12, 30)
+
+
+class SheetColumn(NamedTuple):
+    """Column of the axes: head, width, style of its cells, and the field with its unit."""
+
+    head: str
+    width: float
+    style: str = "label"
+    field: str = ""
+
+
+WORST_CASE = SheetColumn(N_("Worst case"), 11, "share")
+AXIS_COLUMNS = (
+    SheetColumn(N_("Number"), 8, "figure"),
+    SheetColumn(N_("Axis"), 28),
+    SheetColumn(N_("Quantity"), 9, "figure"),
+    SheetColumn(N_("Gear"), 13),
+    SheetColumn(N_("Ordering code"), 24),
+    SheetColumn(N_("Verdict"), 14, ""),
+    SheetColumn(N_("Utilisation"), 11, "share"),
+    WORST_CASE,
+    SheetColumn(N_("Governing check"), 26, "quiet"),
+    SheetColumn(N_("Shortest life"), 14, "figure", "shortest_life_h"),
+    SheetColumn(N_("Life"), 16, "quiet"),
+    SheetColumn(N_("Weight"), 11, "figure", "weight_kg"),
+    SheetColumn(N_("Motor"), 22),
+    SheetColumn(N_("Note"), 40, "quiet"),
+)
+"""Columns of the axes; that of the worst case only where an axis has tolerances. A verdict has its own style."""
 
 
 def gears(export: MachineExport, reader: Reader) -> bytes:
-    """The workbook; the same bytes for the same document."""
+    """Workbook of the gear list; the same bytes for the same document."""
     content = BytesIO()
     book, styles = new_book(content, export)
     for name, write in ((N_("Gear list"), _write_gears), (N_("Axes"), _write_axes)):
@@ -29,7 +66,7 @@ def gears(export: MachineExport, reader: Reader) -> bytes:
 
 
 def write_title(leaf: Leaf, untitled: str, rows: dict[str, Cell]) -> None:
-    """Write title and what else there is to say of a document."""
+    """Write the title, the title block and further rows of a document."""
     heading, reader = leaf.export.heading, leaf.reader
     leaf.put(0, heading.title or reader.text(untitled), "title")
     leaf.sheet.set_row(0, 20)
@@ -57,7 +94,7 @@ def _write_gears(leaf: Leaf, export: MachineExport) -> None:
     }
     write_title(leaf, N_("Untitled machine"), versions)
     texts = [reader.text(head) for head in GEAR_HEADS]
-    heads = [*texts[:5], *(leaf.head(text, "weight_kg") for text in texts[5:])]
+    heads = [*texts[:5], *(leaf.head(text, "weight_kg") for text in texts[5:7]), texts[7]]
     leaf.heads(N_("Gear list"), *heads, numbers=range(3, 7))
     for gear in order.gears:
         known = each.get(gear.designation)
@@ -66,6 +103,7 @@ def _write_gears(leaf: Leaf, export: MachineExport) -> None:
         masses = (reader.value(mass, "kg") for mass in (known.weight_kg if known else None, gear.weight_kg))
         for column, value in enumerate((len(gear.axes), gear.quantity, *masses), 3):
             leaf.put(column, value, "figure")
+        leaf.put(7, ", ".join(gear.motors))
         leaf.row += 1
     sums = (sum(len(gear.axes) for gear in order.gears), sum(gear.quantity for gear in order.gears))
     leaf.put(0, reader.text(N_("Sum")), "section")
@@ -76,37 +114,46 @@ def _write_gears(leaf: Leaf, export: MachineExport) -> None:
 
 
 def _write_axes(leaf: Leaf, export: MachineExport) -> None:
-    reader = leaf.reader
-    heads = [reader.text(head) for head in AXIS_HEADS]
-    heads[8], heads[10] = leaf.head(heads[8], "shortest_life_h"), leaf.head(heads[10], "weight_kg")
-    for column, head in enumerate(heads):
-        leaf.put(column, head, "head of numbers" if column in (0, 2, 6, 8, 10) else "head")
+    left_out = None if has_worst_case(export.document.axes) else WORST_CASE
+    columns = [column for column in AXIS_COLUMNS if column is not left_out]
+    for place, column in enumerate(columns):
+        text = leaf.reader.text(column.head)
+        is_number = column.style in ("figure", "share")
+        leaf.put(
+            place, leaf.head(text, column.field) if column.field else text, "head of numbers" if is_number else "head"
+        )
     leaf.sheet.freeze_panes(1, 2)
     leaf.sheet.repeat_rows(0)
     for axis in export.document.axes:
         leaf.row += 1
-        answer, style = axis.answer, VERDICT_STYLES.get(axis.answer.status, "open")
-        life = None if answer.shortest_life_h is None else life_of(answer.shortest_life_h, answer.shortest_life_of)
-        faults = "; ".join(faults_of(axis, reader))
-        weight = answer.weight_kg if gear_of(axis) else None
-        cells: tuple[tuple[Cell, str], ...] = (
-            (axis.number, "figure"),
-            (axis.name, "label"),
-            (axis.quantity, "figure"),
-            (gear_of(axis), "label"),
-            (axis.ordering_code, "label"),
-            (reader.text(STATUS[answer.status]), style),
-            (answer.utilisation, "share"),
-            (faults or check_of(answer.governing_check, reader), "quiet"),
-            (reader.value(answer.shortest_life_h, "h"), "figure"),
-            (None if life is None else _basis(life.check, life.basis, reader), "quiet"),
-            (reader.value(weight, "kg"), "figure"),
-            (axis.note, "quiet"),
-        )
-        for column, (value, named) in enumerate(cells):
-            leaf.put(column, value, named)
-    leaf.sheet.autofilter(0, 0, leaf.row, len(heads) - 1)
-    leaf.page(AXIS_WIDTHS, across=True)
+        cells = zip(AXIS_COLUMNS, _cells(axis, leaf.reader), strict=True)
+        verdict = VERDICT_STYLES.get(axis.answer.status, "open")
+        for place, (column, value) in enumerate(each for each in cells if each[0] is not left_out):
+            leaf.put(place, value, column.style or verdict)
+    leaf.sheet.autofilter(0, 0, leaf.row, len(columns) - 1)
+    leaf.page([column.width for column in columns], across=True)
+
+
+def _cells(axis: FrozenAxis, reader: Reader) -> tuple[Cell, ...]:
+    """Values of an axis, in the order of AXIS_COLUMNS."""
+    answer = axis.answer
+    life = None if answer.shortest_life_h is None else life_of(answer.shortest_life_h, answer.shortest_life_of)
+    return (
+        axis.number,
+        axis.name,
+        axis.quantity,
+        gear_of(axis),
+        axis.ordering_code,
+        reader.text(STATUS[answer.status]),
+        answer.utilisation,
+        answer.worst_utilisation,
+        "; ".join(faults_of(axis, reader)) or check_of(answer.governing_check, reader),
+        reader.value(answer.shortest_life_h, "h"),
+        None if life is None else _basis(life.check, life.basis, reader),
+        reader.value(answer.weight_kg if gear_of(axis) else None, "kg"),
+        motor_of(axis.application),
+        axis.note,
+    )
 
 
 def _basis(check: str, basis: str, reader: Reader) -> str:

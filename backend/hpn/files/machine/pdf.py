@@ -1,4 +1,4 @@
-"""The PDF report of a machine, in the look of a selection's."""
+"""PDF report of a machine, in the look of a selection's."""
 
 from hpn.files.machine.content import content
 from hpn.files.machine.export import MachineExport, pages_of
@@ -7,6 +7,6 @@ from hpn.words.reader import Reader
 
 
 def pdf(export: MachineExport, reader: Reader, *, axes: str | None = None, full: bool = False) -> bytes:
-    """The report on a machine with pages of some axes; raises InputError as `pages_of`."""
+    """Report on a machine with pages of the axes in `axes`; raises InputError as `pages_of`."""
     pages = pages_of(export.document, axes, full=full)
     return printed("machine.typ", content(export, pages, reader), export.heading.title.strip(), export.created)

@@ -1,1 +1,1 @@
-"""The PDF report."""
+"""PDF report."""

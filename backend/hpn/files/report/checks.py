@@ -21,11 +21,11 @@ TOLD = frozenset({"average_torque", "life", "output_bearing_life"})
 """Checks whose equation carries their basis as a note."""
 
 AS_LIMITED = frozenset({"repeated_peak_torque", "motor_speed", "motor_rated_speed"})
-"""Checks whose basis is their limit's source and nothing more."""
+"""Checks whose basis is only the source of their limit."""
 
 
 def checks(export: Export, reader: Reader) -> list[Row]:
-    """Every check and every equation of the gear, in the order of the checks; without its figures no equations."""
+    """All checks and equations of the gear, in the order of the checks; without the gear's figures no equations."""
     steps, last, rows = _steps(export), -1, list[tuple[int, Row]]()
     for step in steps:
         last = ORDER.get(step.code, last)
@@ -39,12 +39,12 @@ def checks(export: Export, reader: Reader) -> list[Row]:
 
 
 def limits(account: Account, reader: Reader) -> list[Row]:
-    """Every check of the gear with demand and limit, without equations."""
+    """All checks of the gear with demand and limit, without equations."""
     return [_of_check(check, None, reader) for check in account.checks]
 
 
 def bases(export: Export, reader: Reader) -> list[tuple[str, Any]]:
-    """Title and basis of each check, but for what stands beside its equation or limit."""
+    """Title and basis of each check, except where they stand beside its equation or limit."""
     codes = AS_LIMITED | (TOLD & {step.code for step in _steps(export)})
     return [
         (reader.text(check.definition.title), sentence(reader.text(check.definition.basis)))
@@ -76,21 +76,21 @@ def _of_step(step: Step, export: Export, reader: Reader) -> Row:
         "lines": lines,
         "sums": _sums(step, reader),
         "where": row["where"] or ("" if step.equation else reader.text(N_("Not printed in the handbook."))),
-        "notes": [sentence(reader.told(note)) for note in step.notes],
+        "notes": [sentence(reader.sentence(note)) for note in step.notes],
     }
 
 
 def _sums(step: Step, reader: Reader) -> Row | None:
-    """Columns of a step's sums over the phases."""
+    """Columns of a step's sums over the phases; None without sums."""
     sums = addition(reader, step)
     if sums is None:
         return None
-    said = reader.text(N_("Only some of the %(count)s phases are written out; the result includes all of them."))
+    note = reader.text(N_("Only some of the %(count)s phases are written out; the result includes all of them."))
     rows = [[str(place), *values] for place, values in sums.rows]
     return {
         "heads": [math for math, _ in sums.heads],
         "rows": [*rows, ["Σ", *sums.totals]],
-        "note": said % {"count": len(sums.rows) + sums.left_out} if sums.left_out else "",
+        "note": note % {"count": len(sums.rows) + sums.left_out} if sums.left_out else "",
     }
 
 
@@ -100,7 +100,7 @@ def _row(code: str) -> Row:
 
 
 def _of_check(check: CheckLine, limit: Comparison | None, reader: Reader) -> Row:
-    """Row of a check: its limit as an equation, figures that the equation lacks, and its bar."""
+    """Row of a check: its limit as an equation, the figures that the equation lacks, and its bar."""
     reading, result = check.reading, check.result
     row = _row(check.code) | {
         "number": check.definition.equation or "",
@@ -120,17 +120,19 @@ def _of_check(check: CheckLine, limit: Comparison | None, reader: Reader) -> Row
     return row | {"relation": formula(reading.relation), **texts}
 
 
-def bar(utilisation: float | None, bound: float, status: str, reader: Reader) -> Row:
-    """Utilisation as a bar and as a number; all of the bar where a check fails without a number."""
+def bar(utilisation: float | None, bound: float, status: str, reader: Reader, worst: float | None = None) -> Row:
+    """Utilisation as a bar and as a number, with a whisker to the worst case; a full bar where a check fails without
+    a number."""
     share = utilisation if utilisation is not None else 2.0 if status in ("fail", "unsuitable") else 0.0
-    return {"share": share, "bound": bound, "status": status, "utilisation": reader.percent(utilisation, bound)}
+    drawn = {"share": share, "bound": bound, "status": status, "whisker": share if worst is None else worst}
+    return drawn | {"utilisation": reader.percent(utilisation, bound)}
 
 
 # --- Demand and limit in words ----------------------------------------------------------------------------------------
 
 
 def bounds(reading: CheckReading, reader: Reader) -> str:
-    """Limit of a check, and the share of it that the user's own u leaves."""
+    """Limit of a check, and the share of it that the user's utilisation u leaves."""
     if reading.has_unlimited_limit:
         return reader.text(N_("unlimited"))
     part = (
@@ -142,16 +144,16 @@ def bounds(reading: CheckReading, reader: Reader) -> str:
 
 
 def demand(reading: CheckReading, reader: Reader) -> str:
-    """Value that a check tests."""
+    """Demand of a check, with its unit."""
     if reading.has_unlimited_demand:
         return reader.text(N_("unlimited"))
     return measured(reading.demand, reading.unit, reader, reading.bound)
 
 
 def failures(account: Account, reader: Reader) -> str:
-    """Failed checks of a gear in one sentence's middle."""
+    """Failed checks of a gear, for the middle of a sentence."""
     return "; ".join(
-        reader.told(
+        reader.sentence(
             Sentence(
                 N_("{check} {demand}, limit {limit} ({percent})"),
                 {

@@ -1,4 +1,4 @@
-"""The report as data: every text in the reader's language, every number as it is printed. The template only sets it."""
+"""Report as data: every text in the reader's language, every number as printed. The template only sets it in type."""
 
 import re
 from collections.abc import Mapping
@@ -24,10 +24,10 @@ from hpn.words.wording import N_
 LONGEST_TITLE, LONGEST_HEAD = 160, 60
 LONGEST_QR_LINK = 600
 LONGEST_LINK = 2000
-"""Readers open no longer address from a document, and nobody types one."""
+"""Longest link on paper: PDF readers open no longer address, and nobody types one."""
 
 _TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
-"""Characters that turn the direction of whatever follows them."""
+"""Characters that turn the direction of the text after them."""
 
 LABELS = {
     "product": N_("HPN Select"),
@@ -80,11 +80,12 @@ LIVES = N_("Hours of operation of the whole cycle, its pause included. L10: 90 %
 
 
 def content(export: Export, reader: Reader) -> dict[str, Any]:
-    """Everything that the template sets, as JSON-ready data."""
+    """Data of the template, ready for JSON."""
     title = shortened(export.heading.title.strip() or reader.text(LABELS["untitled"]), LONGEST_TITLE)
+    head = running_head(export.heading, export.selection.engine_version, catalogue_version(export, reader), reader)
     return frame(export.heading, reader) | {
         "title": title,
-        "head": [shortened(title, LONGEST_HEAD), _head(export, reader)],
+        "head": [shortened(title, LONGEST_HEAD), head],
         "block": block(export.heading, reader, export.created, export.made),
         "saved": export.created is not None,
         **link_of(export.link, reader, is_saved=export.created is not None),
@@ -99,10 +100,10 @@ def frame(heading: ExportTitle, reader: Reader) -> dict[str, Any]:
 
 
 def parts(export: Export, reader: Reader) -> dict[str, Any]:
-    """Content that the template sets of the selection itself."""
+    """Data of the selection itself."""
     selection, account = export.selection, export.account
-    on_motor, pictures = reader.told(on_motor_torques(selection.notices)), plots.pictures_of(export, reader)
-    return asked(export, reader) | {
+    on_motor, pictures = reader.sentence(on_motor_torques(selection.notices)), plots.pictures_of(export, reader)
+    return inputs(export, reader) | {
         "titles": titles(export, reader),
         "verdict": verdict(export, reader),
         "move_listing": listing(account.moves, reader),
@@ -117,16 +118,16 @@ def parts(export: Export, reader: Reader) -> dict[str, Any]:
         "ratings": tables.lines(account.published, reader),
         "alternatives": alternatives(export, reader),
         "basis": _basis(export, reader, on_motor),
-        "notices": [sentence(reader.told(notice.sentence)) for notice in selection.notices],
+        "notices": [sentence(reader.sentence(notice.sentence)) for notice in selection.notices],
     }
 
 
 def titles(export: Export, reader: Reader) -> dict[str, str]:
-    """Titles that name the gear."""
+    """Titles with the gear's designation."""
     return {key: reader.text(LABELS[key]).format(gear=export.candidate.designation) for key in ("checks", "ratings")}
 
 
-def asked(export: Export, reader: Reader) -> dict[str, Any]:
+def inputs(export: Export, reader: Reader) -> dict[str, Any]:
     """Loads, requirements, motion and phases."""
     account = export.account
     return {
@@ -138,19 +139,14 @@ def asked(export: Export, reader: Reader) -> dict[str, Any]:
 
 
 def _basis(export: Export, reader: Reader, on_motor: str) -> list[tuple[str, Any]]:
-    """Assumptions by their subjects: bases of the checks, and what holds for lives and motor torques."""
+    """Assumptions by their subjects: bases of the checks, and notes on lives and motor torques."""
     text = reader.text
     lives, torques = (text(N_("Lives")), sentence(text(LIVES))), (text(N_("Motor torques")), sentence(on_motor))
     return [*bases(export, reader), lives, torques]
 
 
-def _head(export: Export, reader: Reader) -> str:
-    """Running head beside the title: reference and revision, and the versions behind every figure."""
-    return running_head(export.heading, export.selection.engine_version, catalogue_version(export, reader), reader)
-
-
 def running_head(heading: ExportTitle, engine: str, catalogue: str, reader: Reader) -> str:
-    """The same by the versions themselves."""
+    """Running head: reference and revision, then the versions of engine and catalogue."""
     text = reader.text
     revision = f"{text(N_('Revision'))} {heading.revision.strip()}" if heading.revision.strip() else ""
     own = ", ".join(filter(None, (heading.reference.strip(), revision)))
@@ -161,7 +157,7 @@ def running_head(heading: ExportTitle, engine: str, catalogue: str, reader: Read
 def block(
     heading: ExportTitle, reader: Reader, created: datetime | None, made: datetime | None
 ) -> dict[str, list[str]]:
-    """Fields of the title block: label and text; one that nobody filled in has a dash."""
+    """Fields of the title block: label and text; a dash for an empty field."""
     dated = reader.date(created) if created else reader.day(made) if made else ""
     fields = {
         "reference": (N_("Reference"), heading.reference),
@@ -176,7 +172,7 @@ def block(
 
 
 def shortened(text: str, most: int) -> str:
-    """A text in one line of so many characters, without marks that turn its direction."""
+    """Text in one line of at most `most` characters, without marks that turn its direction."""
     plain = " ".join(_TURNING.sub("\N{REPLACEMENT CHARACTER}", text).split())
     return plain if len(plain) <= most else plain[: most - 1] + "…"
 
@@ -184,18 +180,18 @@ def shortened(text: str, most: int) -> str:
 def link_of(
     link: str, reader: Reader, *, is_saved: bool, notes: Mapping[str, str] = LINK, carried: str = CARRIED
 ) -> dict[str, Any]:
-    """Link and its code, as far as paper carries them whole, and a note on both."""
+    """Link and its QR code, each where paper carries it whole, and a note on both."""
     carrier = "too long" if len(link) > LONGEST_LINK else "saved" if is_saved else "whole"
     return {
         "link": "" if carrier == "too long" else link,
         "link_note": reader.text(notes[carrier]),
         "link_hint": reader.text(carried) if carrier == "whole" else "",
-        "qr": qr_code(link) if len(link) <= LONGEST_QR_LINK else "",
+        "qr": qr_code(link) if 0 < len(link) <= LONGEST_QR_LINK else "",
     }
 
 
 def qr_code(link: str) -> str:
-    """QR code of a link as an SVG drawing as large as there is room, for the report and for a printed page."""
+    """QR code of a link as an SVG drawing that fills its room, for the report and for a printed page."""
     drawing = BytesIO()
     code = segno.make(link, error="m", micro=False)
     code.save(drawing, kind="svg", border=0, xmldecl=False, svgclass=None, lineclass=None, omitsize=True)

@@ -1,6 +1,6 @@
-"""The phases or moves of a long duty cycle as lines of one width, in as many columns as a page holds.
+"""Phases or moves of a long duty cycle as lines of equal width, in as many columns as fit on a page.
 
-A table of 10,000 phases would take typst 700 MB, a cell of ten lines a quarter of it.
+A table of 10,000 phases would take typst 700 MB, cells of ten lines each a quarter of that.
 """
 
 from typing import Any
@@ -10,14 +10,14 @@ from hpn.files.report.tables import MOST_PHASES
 from hpn.words.reader import Reader
 
 GROUP = 10
-"""Phases of a group, with a little space around."""
+"""Phases of a group; groups stand apart by a small space."""
 
 PAGE, GAP = 136, 6
-"""Characters across a page, and between its columns."""
+"""Characters across a page, and characters between its columns."""
 
 
 def listing(table: LineTable | None, reader: Reader) -> dict[str, Any] | None:
-    """Each phase or move of a table that the first page only summarises; None where that page has them all."""
+    """All phases or moves of a table that the first page only summarises; None where the first page lists them all."""
     if table is None or len(table) <= MOST_PHASES:
         return None
     labels = [[reader.text(head), *texts] for head, texts in table.labels.items()]
@@ -31,7 +31,7 @@ def _head(column: QuantityColumn, reader: Reader) -> str:
 
 
 def laid_out(table: list[list[str]]) -> dict[str, Any]:
-    """Columns of texts as lines of one width, as many beside each other as a page holds."""
+    """Columns of texts as lines of equal width, in as many columns as fit on a page."""
     widths = [max(map(len, column)) for column in table]
     head, *lines = (
         "  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in zip(*table, strict=True)

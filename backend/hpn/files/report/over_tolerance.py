@@ -1,8 +1,8 @@
-"""The page of the report on the tolerances: the worst case of each check, and which inputs decide."""
+"""Page of the report on the tolerances: the worst case of each check, and the inputs that decide."""
 
 from typing import Any
 
-from hpn.account.over_tolerance import DecidingLine, OverTolerance, WorstLine, over_tolerance
+from hpn.account.over_tolerance import OverTolerance, WorstLine, over_tolerance
 from hpn.engine.tolerance_words import tolerance_of
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, bounds, demand
@@ -17,29 +17,29 @@ HEADS = (
     ("", ""),
     (N_("Utilisation"), N_("as given")),
 )
-"""Heads of two lines each."""
+"""Headings of two lines each."""
 
 INPUT_HEADS = (N_("Input"), N_("Tolerance"), N_("Worst case, with it exact"), N_("Holds up to"))
 
 
 def tolerances(export: Export, reader: Reader) -> dict[str, Any] | None:
-    """Everything that the page sets; None without tolerances."""
+    """Data of the page; None without tolerances."""
     over = over_tolerance(export.account)
-    said = tolerance_of(export.candidate)
-    if over is None or said is None:
+    tolerance = tolerance_of(export.candidate)
+    if over is None or tolerance is None:
         return None
-    sentences = [reader.told(said), *([reader.told(over.growth)] if over.growth else [])]
+    sentences = [reader.sentence(tolerance), *([reader.sentence(over.growth)] if over.growth else [])]
     remedies = [over.remedy(line, reader) for line in over.holding]
     return {
         "title": reader.text(N_("Over the whole tolerance")),
-        "told": sentence(" ".join(sentences)),
+        "text": sentence(" ".join(sentences)),
         "remedies": [sentence(text) for text in remedies],
-        "standing": reader.told(over.standing),
+        "standing": reader.sentence(over.standing),
         "heads": [[reader.text(line) if line else "" for line in head] for head in HEADS],
         "checks": [_check(line, reader) for line in over.checks],
         "input_heads": [reader.text(head) for head in INPUT_HEADS],
         "inputs": _inputs(over, reader),
-        "failing": sentence(" ".join(map(reader.told, over.failing))),
+        "failing": sentence(" ".join(map(reader.sentence, over.failing))),
     }
 
 
@@ -60,23 +60,20 @@ def _check(line: WorstLine, reader: Reader) -> dict[str, Any]:
 
 
 def _inputs(over: OverTolerance, reader: Reader) -> list[list[Any]]:
-    """Tolerances as they were given, those that decide first."""
-    deciding = {line.given.path: line for line in over.deciding}
+    """Tolerances as they were given; those that decide come first."""
+    deciding = {line.tolerance.path: line for line in over.deciding}
     worst = over.governing.worst if over.governing else None
     lines = sorted(
-        over.given, key=lambda line: [*deciding].index(line.path) if line.path in deciding else len(deciding)
+        over.tolerances, key=lambda line: [*deciding].index(line.path) if line.path in deciding else len(deciding)
     )
     rows = []
     for line in lines:
         one = deciding.get(line.path)
-        exact = f"{_percent(worst, reader)} → {_percent(one.worst, reader)}" if one else NOTHING
-        rows.append([formula(line.symbol), reader.told(line.place), line.text(reader), exact, _up_to(one, reader)])
+        exact = NOTHING
+        if one:
+            between = one.between(worst)
+            shares = (NOTHING if share is None else reader.percent(share, between) for share in (worst, one.worst))
+            exact = " → ".join(shares)
+        up_to = one.tolerance.text(reader, one.allowed) if one and one.allowed else NOTHING
+        rows.append([formula(line.symbol), reader.sentence(line.place), line.text(reader), exact, up_to])
     return rows
-
-
-def _up_to(one: DecidingLine | None, reader: Reader) -> str:
-    return one.given.text(reader, one.allowed) if one and one.allowed else NOTHING
-
-
-def _percent(share: float | None, reader: Reader) -> str:
-    return NOTHING if share is None else reader.percent(share)

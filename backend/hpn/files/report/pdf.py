@@ -1,4 +1,4 @@
-"""The PDF report: tagged pages (PDF/UA-1) with every phase of a long cycle, the same bytes for the same selection."""
+"""PDF report: tagged pages (PDF/UA-1) with every phase of a long cycle, the same bytes for the same selection."""
 
 import json
 import re
@@ -18,15 +18,15 @@ from hpn.words.reader import Reader
 
 FOLDER = Path(__file__).parent
 LOOK = ("look.typ", "selection.typ")
-"""Look of every report, and the parts of a selection; the template of a report stands behind them."""
+"""Look of every report, and the parts of a selection; the report's own template follows them."""
 
 FONTS = data_folder("frontend/dist/paper")
 FIRST_FONTS = ("HPN Sans", "Noto Sans Arabic", "DejaVu Sans Mono", "Noto Sans", "Noto Sans SC")
-"""Fonts that are asked first for a character; then every other Noto font."""
+"""Fonts that typst tries first for a character; then it tries every other Noto font."""
 
 REPLACEMENT = "□"
 KEPT_COMPILATIONS = 10
-"""Compilations for which typst keeps what it laid out, a quarter of a gigabyte for 10,000 phases."""
+"""Compilations for which typst keeps its layout: a quarter of a gigabyte for 10,000 phases."""
 
 NO_PARTS: Mapping[str, bytes] = {}
 
@@ -35,7 +35,7 @@ _ESCAPED = re.compile(r"\\u\{([0-9a-f]+)\}")
 
 
 def pdf(export: Export, reader: Reader) -> bytes:
-    """The report on an export."""
+    """Report on an export."""
     title, parts = export.heading.title.strip(), carried(export, reader)
     return printed("report.typ", content(export, reader), title, export.created, parts)
 
@@ -47,9 +47,10 @@ def printed(
     created: datetime | None,
     attached: Mapping[str, bytes] = NO_PARTS,
 ) -> bytes:
-    """The report that a template makes of data, with parts attached as JSON.
+    """Report of a template and its data, with parts attached as JSON.
 
-    PDF/UA refuses a text that no font can show, so what typst names as such is replaced, and a note says what it was.
+    PDF/UA refuses a character that no font can show. Characters that typst names as such are replaced, and a note lists
+    them.
     """
     seconds = int(created.timestamp()) if created else 0
     texts = {"attached": json.dumps({name: part.decode() for name, part in attached.items()})}
@@ -86,13 +87,13 @@ def _fonts() -> typst.Fonts:
 
 
 def _forget() -> None:
-    """Let typst drop what it keeps of this report: the next one has nothing in common with it."""
+    """Let typst drop its layout of this report: the next report has nothing in common with it."""
     for _ in range(KEPT_COMPILATIONS + 1):
         typst.compile(b" ", font_paths=_fonts(), ignore_system_fonts=True)
 
 
 def _unshown(error: typst.TypstError) -> set[str]:
-    """Characters that typst names as beyond its fonts; none where the error is another one."""
+    """Characters that typst names as missing in its fonts; empty for any other error."""
     texts = _UNSHOWN.findall(error.diagnostic)
     plain = "".join(_ESCAPED.sub(lambda code: chr(int(code[1], 16)), text) for text in texts)
     return {character for character in plain if not character.isascii()}

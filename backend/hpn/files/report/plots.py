@@ -1,4 +1,4 @@
-"""The page's drawings in the colours of the report."""
+"""Drawings of the page in the colours of the report."""
 
 import re
 from typing import Any
@@ -26,7 +26,7 @@ COLOURS = {
     "fail": "#b2241c",
     "strong": "bold",
 }
-"""The page's tokens on paper: those of the light theme."""
+"""Colours of the page's tokens on paper: those of the light theme."""
 
 ON_PAPER = 'text { font-size: 13px; font-family: "HPN Sans" }\n' + re.sub(
     r"var\(--([\w-]+)\)", lambda token: COLOURS[token[1]], STYLE.read_text(encoding="utf-8")
@@ -35,7 +35,7 @@ ON_PAPER = 'text { font-size: 13px; font-family: "HPN Sans" }\n' + re.sub(
 
 
 def pictures_of(export: Export, reader: Reader) -> Pictures | None:
-    """The page's pictures of the reported gear, or None where its limits are not at hand."""
+    """Pictures of the reported gear as on the page; None where its limits are not at hand."""
     gear = export.gear(export.candidate)
     if gear is None or export.figures is None:
         return None
@@ -44,19 +44,19 @@ def pictures_of(export: Export, reader: Reader) -> Pictures | None:
 
 
 def cycle(export: Export, pictures: Pictures | None, reader: Reader) -> dict[str, str]:
-    """The page's drawing of the cycle or motion over time, without limits where the gear's are not at hand."""
+    """Drawing of the cycle or motion over time as on the page, without limits where the gear's are not at hand."""
     picture = pictures.cycle if pictures else cycle_picture(export.application, None, reader)
     return {
         "drawing": markup(picture.drawing, ON_PAPER),
-        "alt": " ".join(reader.told(one) for one in picture.words),
-        "note": reader.told(picture.note) if picture.note else "",
+        "alt": " ".join(reader.sentence(one) for one in picture.words),
+        "note": reader.sentence(picture.note) if picture.note else "",
     }
 
 
 def planes(export: Export, pictures: Pictures | None, reader: Reader, left_out: str) -> list[dict[str, Any]]:
-    """The page's planes of torque against speed of gear and motor, where a motion or a motor is given.
+    """Planes of torque against speed of gear and motor as on the page, where a motion or a motor is given.
 
-    `left_out` is what torques at the motor leave out.
+    `left_out` is the sentence about the parts that torques at the motor leave out.
     """
     if pictures is None:
         return []
@@ -68,7 +68,7 @@ def planes(export: Export, pictures: Pictures | None, reader: Reader, left_out: 
 
 
 def _plane(title: str, plane: Plane, reader: Reader) -> dict[str, Any]:
-    words = " ".join(reader.told(one) for one in plane.words)
+    words = " ".join(reader.sentence(one) for one in plane.words)
     return {
         "title": reader.text(title),
         "drawing": markup(plane.drawing, ON_PAPER),
@@ -78,10 +78,10 @@ def _plane(title: str, plane: Plane, reader: Reader) -> dict[str, Any]:
 
 
 def envelope(pictures: Pictures | None, reader: Reader) -> dict[str, Any] | None:
-    """The page's drawing of the output bearing, and its condition; None where the bearing is not rated."""
+    """Drawing of the output bearing as on the page, and its condition; None where the bearing is not rated."""
     if pictures is None or pictures.bearing is None:
         return None
     return {
         "drawing": markup(chart(pictures.envelope_scene, reader, PAPER), ON_PAPER),
-        "condition": sentence(reader.told(pictures.bearing.condition)),
+        "condition": sentence(reader.sentence(pictures.bearing.condition)),
     }

@@ -1,4 +1,4 @@
-"""Tables of the report: what was asked, figures of cycle and gear, and the gear's published figures."""
+"""Tables of the report: inputs, figures of cycle and gear, and the gear's published figures."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -10,11 +10,11 @@ from hpn.words.symbols import formula, sentence
 from hpn.words.wording import N_, Sentence
 
 MOST_PHASES = 20
-"""Phases up to which each is listed; beyond, their range and sum."""
+"""Most phases that are listed one by one; beyond, the report shows their range and sum."""
 
 
 def lines(items: Iterable[Line], reader: Reader) -> list[dict[str, Any]]:
-    """Lines that have a value: label, symbol, text, and where it comes from."""
+    """Lines with a value: label, symbol, text, and the source of a published figure."""
     return [_row(line, reader) for line in known(items)]
 
 
@@ -33,12 +33,12 @@ def _label(line: Line, reader: Reader) -> str:
 
 
 def derived(account: Account, reader: Reader) -> list[dict[str, Any]]:
-    """Figures of the cycle and of the gear under it; what was entered stands with the inputs."""
+    """Figures of the cycle and of the gear under it; entered values stand with the inputs."""
     return lines((line for line in (*account.cycle, *account.figures) if line.kind == "computed"), reader)
 
 
 def phases(account: Account, reader: Reader) -> dict[str, Any]:
-    """The duty cycle: each phase, or of a long cycle least, largest and sum."""
+    """Duty cycle: each phase, or for a long cycle the least and largest values and the sum."""
     table = account.phases
     assert table is not None
     if len(table) <= MOST_PHASES:
@@ -49,7 +49,7 @@ def phases(account: Account, reader: Reader) -> dict[str, Any]:
 
 
 def motion(account: Account, reader: Reader) -> dict[str, Any] | None:
-    """Mechanism and moves as they were given; of many moves their number alone. None where phases were given."""
+    """Mechanism and moves as they were given; of many moves only their number. None where phases were given."""
     table = account.moves
     if table is None:
         return None
@@ -58,13 +58,13 @@ def motion(account: Account, reader: Reader) -> dict[str, Any] | None:
 
 
 def _table(table: LineTable, reader: Reader, beyond: str = "") -> dict[str, Any]:
-    """Heads and cells of a table, the labels of its rows in front; of a long one a note in place of the rows."""
+    """Headings and cells of a table, the labels of its rows in front; a long table has a note in place of the rows."""
     is_long = len(table) > MOST_PHASES
     cells = [] if is_long else [*table.labels.values(), *(column.numbers(reader) for column in table.columns)]
     return {
         "header": [*([[], reader.text(head)] for head in table.labels), *(_head(c, reader) for c in table.columns)],
         "rows": [[*row] for row in zip(*cells, strict=True)],
-        "note": reader.told(Sentence(beyond, {"count": reader.exact(len(table))})) if is_long else "",
+        "note": reader.sentence(Sentence(beyond, {"count": reader.exact(len(table))})) if is_long else "",
         "words": len(table.labels),
     }
 

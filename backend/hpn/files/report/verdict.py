@@ -27,7 +27,7 @@ REASONS: Mapping[str, str] = {
         "No gear is suitable. {gear} can’t be rated: figures that the checks need are not in this catalogue’s source."
     ),
 }
-"""Notes on the reported gear where none is suitable."""
+"""Sentences on the reported gear where none is suitable."""
 
 CHOSEN: Mapping[str, str] = {
     "unsuitable": N_("{gear} was chosen, but “{check}” fails at {percent}."),
@@ -37,7 +37,7 @@ CHOSEN: Mapping[str, str] = {
         "{gear} was chosen, but can’t be rated: figures that the checks need are not in this catalogue’s source."
     ),
 }
-"""Notes on a gear that does not pass and was chosen in place of a suitable one, or of the nearest miss."""
+"""Sentences on a chosen gear that fails, in place of a suitable one or of the nearest miss."""
 
 SUITABLE, NONE = N_("{selected} would be suitable."), N_("No gear is suitable.")
 OUTSIDE = N_("It passes every check, but its ratio or size was not asked for.")
@@ -49,18 +49,18 @@ NO_PLACE = N_("{count} of {all} gears are suitable")
 
 
 def verdict(export: Export, reader: Reader) -> dict[str, Any]:
-    """The verdict: gear, status and rank, a sentence, and the check that governs."""
+    """Data of the verdict: gear, status and rank, a sentence, and the governing check."""
     candidate, code = export.candidate, export.candidate.governing_check
     limit = export.account.torque_limit
     lines = limit.lines if limit.warns or candidate.status == "suitable" else ()
     of_worst = tolerance_of(candidate)
-    sentences = (*_said(export, reader), *((of_worst,) if of_worst else ()), *lines)
-    said = [reader.told(sentence) for sentence in sentences]
+    sentences = (*_sentences(export, reader), *((of_worst,) if of_worst else ()), *lines)
+    texts = [reader.sentence(sentence) for sentence in sentences]
     return {
         "gear": candidate.designation,
         "word": reader.text(VERDICTS[candidate.status]),
-        "rank": reader.told(_rank(export)),
-        "text": sentence(" ".join(said)),
+        "rank": reader.sentence(_rank(export)),
+        "text": sentence(" ".join(texts)),
         **bar(candidate.utilisation, bound_of(export, code), candidate.status, reader),
         "governing": reader.text(export.selection.name_of(code)) if code else "",
         "allowed": exact_percent(export.application.requirements.utilisation, reader),
@@ -69,7 +69,7 @@ def verdict(export: Export, reader: Reader) -> dict[str, Any]:
 
 
 def _rank(export: Export) -> Sentence:
-    values = {"rank": export.candidate.rank or 0, "count": len(_suitable(export)), "all": len(export.asked)}
+    values = {"rank": export.candidate.rank or 0, "count": len(_suitable(export)), "all": len(export.within_request)}
     return Sentence(PLACE if export.candidate.rank else NO_PLACE, values)
 
 
@@ -80,13 +80,13 @@ def _facts(export: Export, reader: Reader) -> Iterable[tuple[str, str]]:
     if load and (check := account.check("output_bearing_life")) and check.result.status != "not_rated":
         values = {"basis": load.life_basis, "life": Quantity(load.life_h, "h", 6)}
         requirement = Sentence(N_("Bearing life {basis}, asked {life}"), values)
-        yield reader.told(requirement), account.text(f"candidate.bearing_life_{load.life_basis}_h", reader)
+        yield reader.sentence(requirement), account.text(f"candidate.bearing_life_{load.life_basis}_h", reader)
     yield reader.text(N_("Gear life L_10")), account.text("candidate.life_L10_h", reader)
     yield reader.text(GEAR["weight_kg"].name), account.text("gear.weight_kg", reader)
     yield reader.text(N_("Length")), account.text("gear.length", reader)
 
 
-def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
+def _sentences(export: Export, reader: Reader) -> Iterable[Sentence]:
     candidate, selected = export.candidate, export.selection.selected
     status, code = candidate.status, candidate.governing_check
     without_number = "never_stops" if code == "momentary_peak_torque" else "unlimited"
@@ -112,15 +112,15 @@ def _said(export: Export, reader: Reader) -> Iterable[Sentence]:
 
 
 def _remedy(export: Export, candidate: Candidate) -> Sentence | None:
-    """Changes that make a gear fit, as far as its catalogue figures are known."""
+    """Sentence on changes that make a gear fit; None without any, or where its catalogue figures are unknown."""
     known = export.gear(candidate) and export.figures
     return remedy_of(candidate, needed_of(candidate, export.application, known) if known else ())
 
 
 def _place(export: Export) -> Sentence:
-    """Where a suitable gear stands among the suitable ones."""
+    """Rank of a suitable gear among the suitable ones."""
     count, selected = len(_suitable(export)), export.selection.selected
-    if export.candidate not in export.asked:
+    if export.candidate not in export.within_request:
         return Sentence(OUTSIDE)
     if export.candidate.designation != selected:
         return Sentence(RANKED, {"selected": selected or "", "count": count})
@@ -128,14 +128,14 @@ def _place(export: Export) -> Sentence:
 
 
 def _suitable(export: Export) -> list[Candidate]:
-    """Suitable gears of those that were asked for."""
-    return [candidate for candidate in export.asked if candidate.status == "suitable"]
+    """Suitable gears among the requested ones."""
+    return [candidate for candidate in export.within_request if candidate.status == "suitable"]
 
 
 # --- Alternatives -----------------------------------------------------------------------------------------------------
 
 MOST_SUITABLE = 6
-"""Suitable gears that are listed, best first; the reported one stands among them wherever it ranks."""
+"""Most suitable gears in the list, best first; the reported one is listed at any rank."""
 
 HEADS = (
     N_("Rank"),
@@ -150,22 +150,22 @@ HEADS = (
 
 
 def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
-    """How many gears were considered, the best suitable ones, and what keeps a lighter one or the next from fitting."""
+    """Number of gears considered, the best suitable ones, and the reasons why a lighter or the next one fails."""
     counts = dict.fromkeys(("suitable", "unsuitable", "unrated"), 0)
-    for candidate in export.asked:
+    for candidate in export.within_request:
         counts[candidate.status] += 1
     overview = Sentence(
         N_("{total} gears considered: {suitable} suitable, {unsuitable} not suitable, {unrated} not rated."),
-        {"total": len(export.asked), **counts},
+        {"total": len(export.within_request), **counts},
     )
     suitable = [candidate for candidate in export.selection.candidates if candidate.status == "suitable"]
     listed = [c for k, c in enumerate(suitable) if k < MOST_SUITABLE or c.designation == export.candidate.designation]
     rest = ", ".join(candidate.designation for candidate in suitable if candidate not in listed)
     return {
-        "overview": reader.told(overview),
+        "overview": reader.sentence(overview),
         "heads": [sentence(reader.text(head)) for head in HEADS],
         "rows": [_row(export, candidate, reader) for candidate in listed],
-        "rest": reader.told(Sentence(N_("and {gears}"), {"gears": rest})) if rest else "",
+        "rest": reader.sentence(Sentence(N_("and {gears}"), {"gears": rest})) if rest else "",
         "misses": [
             [reader.text(N_("Nearest miss")), sentence(_missed(export, candidate, reader))]
             for candidate in export.misses
@@ -174,7 +174,7 @@ def alternatives(export: Export, reader: Reader) -> dict[str, Any]:
 
 
 def beside(export: Export, reader: Reader, most: int) -> dict[str, Any]:
-    """The next suitable gears beside the reported one, or the nearest ones where it is not suitable."""
+    """Next suitable gears beside the reported one, or the nearest ones where none is suitable."""
     others = [candidate for candidate in export.selection.candidates if candidate is not export.candidate]
     suitable = [candidate for candidate in others if candidate.status == "suitable"]
     listed = suitable or [candidate for candidate in others if candidate.is_judged]
@@ -186,7 +186,7 @@ def beside(export: Export, reader: Reader, most: int) -> dict[str, Any]:
 
 
 def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]:
-    """A suitable gear as the cells of a table."""
+    """Cells of a suitable gear in the table."""
     account, code, life = export.account.of(candidate), candidate.governing_check, shortest_life(candidate)
     return {
         "rank": reader.exact(candidate.rank),
@@ -197,17 +197,17 @@ def _row(export: Export, candidate: Candidate, reader: Reader) -> dict[str, Any]
         "figures": [
             account.text("gear.weight_kg", reader) or NOTHING,
             account.text("gear.length", reader) or NOTHING,
-            reader.told(life.sentence) if life else NOTHING,
+            reader.sentence(life.sentence) if life else NOTHING,
         ],
     }
 
 
 def _missed(export: Export, candidate: Candidate, reader: Reader) -> str:
-    """Failed checks of a rejected gear, and the ways to make it fit."""
+    """Failed checks of a rejected gear, and the changes that make it fit."""
     account, name = export.account.of(candidate), candidate.designation
     if account.gear and account.gear.weight_kg:
         name = f"{name} ({account.text('gear.weight_kg', reader)})"
     failed = failures(account, reader)
-    sentence = reader.told(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
+    sentence = reader.sentence(Sentence(N_("{gear} fails: {failures}."), {"gear": name, "failures": failed}))
     remedy = _remedy(export, candidate)
-    return f"{sentence} {reader.told(remedy)}" if remedy else sentence
+    return f"{sentence} {reader.sentence(remedy)}" if remedy else sentence

@@ -1,4 +1,4 @@
-"""The sheet of all candidates, best first: verdict and utilisations, then computed and published figures."""
+"""Sheet of all candidates, best first: verdict and utilisations, then computed and published figures."""
 
 from hpn.account.account import Account
 from hpn.files.workbook.sheet import VERDICT_STYLES, SelectionSheet
@@ -7,10 +7,10 @@ from hpn.words.wording import N_
 
 IDENTITY = (N_("Gear"), N_("Verdict"), N_("Utilisation"), N_("Rank"))
 HEAD_POINTS = 80
-"""Height of the heads, which have titles of checks in narrow columns."""
+"""Height of the headings, in points: titles of checks need it in narrow columns."""
 
 WIDTH, CHECK_WIDTH, MOST_ACROSS = 12.0, 10.0, 17
-"""Widths of columns in characters, and the number of checks that a page across has room for."""
+"""Widths of columns in characters, and the number of checks that fit across a page."""
 
 
 def write_candidates(sheet: SelectionSheet) -> None:
@@ -49,4 +49,4 @@ def _write_candidate(sheet: SelectionSheet, account: Account, checks: list[str],
         sheet.put(column, check.utilisation if check else None, "share")
     for column, code in enumerate(figures, len(IDENTITY) + len(checks)):
         if line := account.line(code):
-            sheet.put(column, line.shown(sheet.reader), "figure")
+            sheet.put(column, line.value_for(sheet.reader), "figure")

@@ -1,4 +1,4 @@
-"""The handbook's printed equations 17.2 to 17.10, live for one gear: from the phases and T_k on the same sheet."""
+"""Printed equations 17.2 to 17.10 of the handbook, live for one gear: from the phases and T_k on the same sheet."""
 
 from collections.abc import Mapping
 
@@ -29,7 +29,7 @@ RATED = {
 """Published figures of the equations: field and name of their cell."""
 
 BLOCKS = {"torque_Nm": "T", "speed_rpm": "n", "duration_s": "t", "peak_torque_Nm": "T_pk", "peak_speed_rpm": "n_pk"}
-"""Columns of the phases; a blank peak is that of a steady phase."""
+"""Columns of the phases; a blank peak means a steady phase."""
 
 _WORK = "SUMPRODUCT(ABS({n})*{t})"
 _LARGEST = "SUMPRODUCT(MAX(ABS({T})))"
@@ -46,7 +46,7 @@ FORMULAS: Mapping[str, str] = {
     "life_L10_h": 'IF({T_N}="","",IF({average_torque_Nm}=0,"[unlimited]",'
     "{hours}*{n_rated}/{average_input_speed_rpm}*({T_N}/{average_torque_Nm})^(10/3)))",
 }
-"""Equations 17.2, 17.4 to 17.6, 17.9 and 17.10, by the figure that each gives."""
+"""Equations 17.2, 17.4 to 17.6, 17.9 and 17.10, by the figure that each calculates."""
 
 COMPARED = {
     "average_torque": ("average_torque_Nm", "T_N"),
@@ -59,13 +59,13 @@ COMPARED = {
 
 
 def write_equations(sheet: SelectionSheet) -> None:
-    """Write the sheet of a gear whose figures are known; only phases, pause and T_k are open."""
+    """Write the sheet of a gear with known figures; only phases, pause and T_k can be changed."""
     sheet.reader = Reader(sheet.reader.language, digits=sheet.reader.digits)  # the handbook's units
     sheet.put(0, f"{sheet.reader.text(N_('Equations'))}: {sheet.export.candidate.designation}", "title")
     sheet.row += 1
     sheet.note(sheet.reader.text(NOTE), WIDTHS)
     cells = _write_figures(sheet)
-    inputs = sheet.row + len(FORMULAS) + len(COMPARED) + 7  # phases stand last, so that any number has room
+    inputs = sheet.row + len(FORMULAS) + len(COMPARED) + 7  # phases stand last, so that there is room for any number
     cells |= _cells_of_inputs(sheet, inputs)
     _write_formulas(sheet, cells)
     _write_limits(sheet, cells)
@@ -88,7 +88,7 @@ def _write_figures(sheet: SelectionSheet) -> dict[str, str]:
     sheet.lines(N_("Published figures"), lines.values())
     known = [name for name, line in lines.items() if line.value is not None]
     cells = {name: _cell(sheet.row - len(known) + place, 2) for place, name in enumerate(known)}
-    return dict.fromkeys(lines, '""') | cells  # a figure that is not published is a blank in every formula
+    return dict.fromkeys(lines, '""') | cells  # an unpublished figure is a blank in every formula
 
 
 def _cell(row: int, column: int) -> str:
@@ -105,14 +105,14 @@ def _cells_of_inputs(sheet: SelectionSheet, row: int) -> dict[str, str]:
 
 
 def _write_formulas(sheet: SelectionSheet, cells: dict[str, str]) -> None:
-    """Write the equations, each with its saved value; their cells join the others."""
+    """Write the equations, each with its saved value; add their cells to `cells`."""
     sheet.heads(N_("Equations"))
     account = sheet.export.account
     unlimited = sheet.reader.text(N_("unlimited"))
     for name, formula in FORMULAS.items():
         line = account.line(f"duty.{name}") or account.line(f"candidate.{name}")
         line = line or Line("", CANDIDATE[name])  # its version did not know the figure
-        named, value = line.named, line.shown(sheet.reader)
+        named, value = line.named, line.value_for(sheet.reader)
         cell: Cell = "" if value is None else value
         sheet.put(0, sheet.reader.text(named.name))
         sheet.put(1, named.symbol, "quiet")
@@ -154,7 +154,7 @@ RATED_FIELD = {name: field for field, name in RATED.items()}
 
 
 def _write_inputs(sheet: SelectionSheet) -> None:
-    """Write pause, T_k and the phases, the cells that may be changed."""
+    """Write pause, T_k and the phases: the cells that may be changed."""
     application, candidate = sheet.export.application, sheet.export.candidate
     sheet.heads(N_("Inputs"))
     typed = application.emergency_stop.torque_Nm if application.emergency_stop else None

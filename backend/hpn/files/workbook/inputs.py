@@ -1,4 +1,4 @@
-"""The sheet of all inputs that are given: loads, requirements, motion, and below them the duty cycle."""
+"""Sheet of all given inputs: loads, requirements, motion, and below them the duty cycle."""
 
 from hpn.account.inputs import MOTION_TITLE, MOVES_TITLE
 from hpn.files.workbook.sheet import SelectionSheet
@@ -8,7 +8,7 @@ WIDTHS = (44, 14, 14, 14, 14, 14, 14, 14, 14)
 
 
 def write_inputs(sheet: SelectionSheet) -> None:
-    """Write the sheet; phases stand last, so that any number has room."""
+    """Write the sheet; phases stand last, so that there is room for any number."""
     account = sheet.export.account
     for title, lines in (
         (N_("Loads"), account.loads),

@@ -1,4 +1,4 @@
-"""A sheet of the workbook, written from the top: its styles, its tables and its page."""
+"""Sheet of the workbook, written from the top: its styles, its tables and its page."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ from hpn.words.units import symbol_of
 from hpn.words.wording import N_
 
 FONT = {"font_name": "Arial", "font_size": 10}
-"""A font that has the same widths in every office program, so that pages break alike."""
+"""Font with the same widths in every office program, so that pages break alike."""
 
 ACCENT, QUIET = "#0B5394", "#5B6875"
 FIGURE = "[>=10000000]0.00E+00;[>=10000]#,##0;#,##0.00##"
-"""Number format that fits the column, which would show hashes otherwise; above 10,000 no decimals matter."""
+"""Number format that fits the column (a longer number would show as hashes); above 10,000 no decimals matter."""
 
 _HEAD = {"bold": True, "font_color": "#FFFFFF", "bg_color": ACCENT, "text_wrap": True, "valign": "top"}
 
@@ -50,14 +50,14 @@ VERDICT_STYLES: Mapping[str, str] = {
 """Style of a verdict on a check or candidate."""
 
 PAPERS: Mapping[Paper, int] = {"a4": 9, "us-letter": 1}
-"""Numbers of the sizes of paper in the file format."""
+"""Numbers of paper sizes in the file format."""
 
 LONGEST_HEADER_TEXT, LONGEST_FOOTER_LINK = 100, 100
 HEAD_AND_FOOT = {"margin": 0.25}
 """Distance from the edge of the paper, in inches."""
 
 LONGEST_TEXT = 32_000
-"""Characters of a cell, of which the file format has room for 32,767."""
+"""Most characters of a cell; the file format has room for 32,767."""
 
 ROW_POINTS = 12.75
 
@@ -65,7 +65,7 @@ Cell = float | str | None
 
 
 class Titled(Protocol):
-    """Head and foot of a workbook's pages: title block, time of saving and link."""
+    """Contents of head and foot of a workbook's pages: title block, time of saving and link."""
 
     @property
     def heading(self) -> ExportTitle:
@@ -73,7 +73,7 @@ class Titled(Protocol):
 
     @property
     def created(self) -> datetime | None:
-        """Moment of saving; None for what is not saved."""
+        """Moment of saving; None for an unsaved document."""
 
     @property
     def link(self) -> str:
@@ -82,7 +82,7 @@ class Titled(Protocol):
 
 @dataclass
 class Leaf:
-    """A sheet that is written from the top, in its reader's language and units; `row` is the next one."""
+    """Sheet that is written from the top, in its reader's language and units; `row` is the next row."""
 
     sheet: Any
     styles: Mapping[str, Any]
@@ -91,7 +91,8 @@ class Leaf:
     row: int = 0
 
     def put(self, column: int, value: Cell, style: str = "label") -> None:
-        """Write a cell: a number with all of its digits, a text as it stands; blank for none, nothing for None."""
+        """Write a cell: a number with all of its digits, or a text; an empty text writes a blank, None writes
+        nothing."""
         if value == "":
             self.sheet.write_blank(self.row, column, None, self.styles[style])
         elif isinstance(value, str):
@@ -100,7 +101,7 @@ class Leaf:
             self.sheet.write_number(self.row, column, EveryDigit(value), self.styles[style])
 
     def heads(self, title: str, *heads: str, numbers: Sequence[int] = ()) -> None:
-        """Begin a table; heads of numbers stand at the right."""
+        """Begin a table; headings of numbers are aligned right."""
         self.row += 1
         self.put(0, self.reader.text(title), "section")
         self.row += 1
@@ -109,18 +110,18 @@ class Leaf:
         self.row += bool(heads)
 
     def note(self, text: str, widths: Sequence[float]) -> None:
-        """Write a text across columns; no reader of the file fits a merged row to its text by itself."""
+        """Write a text across columns, with its row's height: no office program fits a merged row to its text."""
         self.sheet.merge_range(self.row, 0, self.row, len(widths) - 1, text, self.styles["wrap"])
         self.sheet.set_row(self.row, ROW_POINTS * (1 + len(text) // int(sum(widths))))
         self.row += 1
 
     def head(self, text: str, field: str) -> str:
-        """Head of a column of numbers: a text or symbol, with the unit that its reader sees."""
+        """Heading of a column of numbers: a text or symbol, with the unit that the reader sees."""
         unit = self.reader.unit(symbol_of(field))
         return f"{text} [{unit}]" if unit else text
 
     def page(self, widths: Sequence[float], *, across: bool = False, pages: int = 1, columns: int = 0) -> None:
-        """Set up columns and page: what is printed are the first columns, or all, on some pages beside each other."""
+        """Set up columns and page: print the first `columns` columns, or all, on `pages` pages beside each other."""
         for column, width in enumerate(widths):
             self.sheet.set_column(column, column, width)
         if across:
@@ -143,12 +144,12 @@ class Leaf:
 
 @dataclass
 class SelectionSheet(Leaf):
-    """A sheet of a selection."""
+    """Sheet of a selection."""
 
     export: Export
 
     def lines(self, title: str, lines: Iterable[Line]) -> None:
-        """Table of quantities with a value; nothing where there is none."""
+        """Write a table of the quantities that have a value; nothing where there is none."""
         with_value, reader = known(lines), self.reader
         if not with_value:
             return
@@ -156,13 +157,13 @@ class SelectionSheet(Leaf):
         for line in with_value:
             self.put(0, line.label(reader))
             self.put(1, line.named.symbol, "quiet")
-            self.put(2, line.shown(reader), "figure")
+            self.put(2, line.value_for(reader), "figure")
             self.put(3, reader.unit(line.unit) if isinstance(line.value, float | int) else "", "unit")
             self.put(4, reader.text(LOWER_BOUND) if line.is_lower_bound else line.where(reader), "quiet")
             self.row += 1
 
     def table(self, title: str, table: LineTable) -> None:
-        """Table of columns by their heads, each with the unit of its numbers."""
+        """Write a table of columns by their headings, each with the unit of its numbers."""
         text, columns = self.reader.text, table.columns
         heads = [self.head(c.head.named.symbol or c.head.label(self.reader), c.head.code) for c in columns]
         first = len(table.labels)
@@ -171,23 +172,23 @@ class SelectionSheet(Leaf):
             for column, label in enumerate(labels):
                 self.put(column, label, "figure" if column else "quiet")
             for column, each in enumerate(columns, first):
-                self.put(column, each.head.of(each.values[place]).shown(self.reader), "figure")
+                self.put(column, each.head.of(each.values[place]).value_for(self.reader), "figure")
             self.row += 1
 
 
 def _plain(text: str) -> str:
-    """Text of a header without commands, which begin with &."""
+    """Text for a header or footer, where & begins a command: each & is doubled."""
     return text.replace("&", "&&")
 
 
 # --- The book ---------------------------------------------------------------------------------------------------------
 
 UNDATED = datetime(1980, 1, 1)
-"""Creation time of a workbook of what is not saved: the earliest that its container can hold."""
+"""Creation time of a workbook of an unsaved document: the earliest that its container can hold."""
 
 
 def new_book(content: BytesIO, export: Titled) -> tuple[Any, Mapping[str, Any]]:
-    """A workbook and its styles; the same bytes for the same content."""
+    """Workbook and its styles; the same bytes for the same content."""
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "nan_inf_to_errors": False}
     book = xlsxwriter.Workbook(content, options | {"default_format_properties": dict(FONT)})
     created = export.created.astimezone(UTC).replace(tzinfo=None) if export.created else UNDATED

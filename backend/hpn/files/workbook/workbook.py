@@ -1,4 +1,4 @@
-"""The workbook: title block, checks, figures and notes, all inputs, every candidate, and the printed equations."""
+"""Workbook of a selection: title block, checks, figures and notes, all inputs, every candidate, printed equations."""
 
 import json
 from collections.abc import Mapping
@@ -22,14 +22,14 @@ from hpn.words.wording import N_
 PROVED_WORD, SAMPLED_WORD = N_("proved"), N_("sampled")
 
 WIDTHS = (38, 18, 13, 13, 9, 11, 14, 30)
-"""Columns of the first sheet in characters; the basis of each check stands behind them and is not printed."""
+"""Widths of the first sheet's columns in characters; the basis of each check stands behind them and is not printed."""
 
 CARRIED = "hpn"
-"""Name of the sheet that is not shown."""
+"""Name of the hidden sheet."""
 
 
 def workbook(export: Export, reader: Reader) -> bytes:
-    """The workbook on an export; the same bytes for the same selection."""
+    """Workbook of an export; the same bytes for the same selection."""
     content = BytesIO()
     book, styles = new_book(content, export)
     for name, write in (
@@ -46,7 +46,7 @@ def workbook(export: Export, reader: Reader) -> bytes:
 
 
 def write_carried(sheet: Any, parts: Mapping[str, bytes]) -> None:
-    """Write what the workbook carries of itself: on a sheet that is not shown, a row for each part, in cells of ASCII.
+    """Write the parts that the workbook carries on a hidden sheet: a row for each part, in cells of ASCII.
 
     The file format takes `_x0041_` for a letter, and has room for some 32,000 characters in a cell.
     """
@@ -75,7 +75,7 @@ def _write_title_block(sheet: SelectionSheet) -> None:
     sheet.put(0, heading.title or reader.text(N_("Untitled selection")), "title")
     sheet.sheet.set_row(0, 20)
     sheet.sheet.freeze_panes(1, 0)
-    candidate, made = export.candidate, export.made
+    candidate, moment = export.candidate, export.made
     block: dict[str, Cell] = {
         N_("Gear"): candidate.designation,
         N_("Ordering code"): heading.ordering_code,
@@ -83,7 +83,7 @@ def _write_title_block(sheet: SelectionSheet) -> None:
         N_("Revision"): heading.revision,
         N_("Author"): heading.author,
         N_("Saved"): reader.date(export.created) if export.created else "",
-        N_("Made, not saved"): reader.day(made) if made and not export.created else "",
+        N_("Made, not saved"): reader.day(moment) if moment and not export.created else "",
         N_("Engine"): export.selection.engine_version,
         N_("Catalogue"): catalogue_version(export, reader),
         N_("Link"): export.link if len(export.link) < LONGEST_TEXT else "",
@@ -153,7 +153,7 @@ INPUT_HEADS = (N_("Input"), N_("Tolerance"), N_("Worst case, with it exact"), N_
 
 
 def _write_tolerances(sheet: SelectionSheet) -> None:
-    """Write the worst case of each check, and the tolerances with what decides."""
+    """Write the worst case of each check, and the tolerances with the figures of those that decide."""
     over, reader = over_tolerance(sheet.export.account), sheet.reader
     if over is None:
         return
@@ -170,22 +170,22 @@ def _write_tolerances(sheet: SelectionSheet) -> None:
         sheet.put(6, text(VERDICTS[line.status]), VERDICT_STYLES[line.status])
         sheet.put(7, text(PROVED_WORD if line.is_exact else SAMPLED_WORD), "quiet")
         sheet.row += 1
-    deciding = {line.given.path: line for line in over.deciding}
+    deciding = {line.tolerance.path: line for line in over.deciding}
     sheet.heads(N_("Tolerances"), *map(text, INPUT_HEADS), numbers=(2,))
-    for each in over.given:
+    for each in over.tolerances:
         one = deciding.get(each.path)
-        sheet.put(0, reader.told(each.place))
+        sheet.put(0, reader.sentence(each.place))
         sheet.put(1, each.text(reader), "quiet")
         if one:
             sheet.put(2, one.worst, "share")
             sheet.put(3, each.text(reader, one.allowed) if one.allowed else "", "quiet")
         sheet.row += 1
     for sentence in (*([over.growth] if over.growth else []), *over.failing):
-        sheet.note(reader.told(sentence), WIDTHS)
+        sheet.note(reader.sentence(sentence), WIDTHS)
 
 
 def _sides(sheet: SelectionSheet, reading: CheckReading) -> tuple[Cell, Cell]:
-    """Demand and limit; the word where one is unlimited."""
+    """Demand and limit; the word “unlimited” for a side without a bound."""
     unlimited = sheet.reader.text(N_("unlimited"))
     demand, limit = (sheet.reader.value(value, reading.unit) for value in (reading.demand, reading.limit))
     return unlimited if reading.has_unlimited_demand else demand, unlimited if reading.has_unlimited_limit else limit
@@ -194,6 +194,6 @@ def _sides(sheet: SelectionSheet, reading: CheckReading) -> tuple[Cell, Cell]:
 def _write_notes(sheet: SelectionSheet) -> None:
     sheet.heads(N_("Assumptions and notes"))
     if of_worst := tolerance_of(sheet.export.candidate):
-        sheet.note(sheet.reader.told(of_worst), WIDTHS)
+        sheet.note(sheet.reader.sentence(of_worst), WIDTHS)
     for notice in sheet.export.selection.notices:
-        sheet.note(sheet.reader.told(notice.sentence), WIDTHS)
+        sheet.note(sheet.reader.sentence(notice.sentence), WIDTHS)

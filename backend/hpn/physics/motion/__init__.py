@@ -1,6 +1,7 @@
-"""Motion of a mechanism: what a person says of mechanism and moves, and the load phases that come out."""
+"""Motion of a mechanism: the user's mechanism and moves, and the resulting load phases."""
 
 from hpn.physics.motion.course import Course
+from hpn.physics.motion.curve import DriveTrains, judged_along
 from hpn.physics.motion.motor import motor_torques, square_torque
 from hpn.physics.motion.stopped import StoppedLoad
 from hpn.physics.motion.trace import Trace, motor_trace, peak_instant, trace_of
@@ -8,8 +9,10 @@ from hpn.physics.motion.traction import tangential_force
 
 __all__ = [
     "Course",
+    "DriveTrains",
     "StoppedLoad",
     "Trace",
+    "judged_along",
     "motor_torques",
     "motor_trace",
     "peak_instant",

@@ -64,7 +64,7 @@ DIMENSIONS: Mapping[str, tuple[str, ...]] = {
 """Dimensions that the inertia of a shape needs."""
 
 OF_MASS: Mapping[str, str] = {"disc": "height_mm", "ring": "height_mm", "bar": "diameter_mm", "block": "height_mm"}
-"""Dimension that a shape needs as well where its mass comes from its density."""
+"""Further dimension of a shape whose mass follows from its density."""
 
 _ALL = ("diameter_mm", "inner_diameter_mm", "length_mm", "width_mm", "height_mm")
 
@@ -131,7 +131,7 @@ class Body(Model):
         )
 
     def _own_inertia(self, mass_kg: float) -> float:
-        """About the axis through its own middle."""
+        """Moment of inertia in kg m² about the axis through its own middle."""
         d, d_i = self.diameter_mm or 0.0, self.inner_diameter_mm or 0.0
         if self.shape == "bar":
             return bar_inertia(mass_kg=mass_kg, length_mm=self.length_mm or 0.0, diameter_mm=d)
@@ -142,9 +142,9 @@ class Body(Model):
 
 @dataclass(frozen=True, slots=True)
 class BodySum:
-    """Bodies together: moment of inertia and mass, and those off the axis as one mass at its mean distance.
+    """Sum of bodies: moment of inertia and mass, and the bodies off the axis as one mass at its mean distance.
 
-    The distance is None where none lies off the axis. It counts all of them on one side, the worst case for gravity.
+    The distance is None if none lies off the axis. All count on one side, the worst case for gravity.
     """
 
     inertia_kgm2: float
@@ -154,7 +154,7 @@ class BodySum:
 
 
 def sum_of(bodies: Sequence[Body]) -> BodySum:
-    """Bodies about one axis together."""
+    """Sum of bodies about one axis."""
     off = [body for body in bodies if body.distance_mm]
     mass = fsum(body.total_mass_kg for body in off)
     moment = fsum(body.total_mass_kg * body.distance_mm for body in off)

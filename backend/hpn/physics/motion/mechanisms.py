@@ -1,4 +1,4 @@
-"""Mechanisms between gear and load, and what they come to as a load on a shaft that turns."""
+"""Mechanisms between gear and load, and their equivalent load on a turning shaft."""
 
 import math
 from abc import abstractmethod
@@ -37,19 +37,19 @@ def sine(angle_deg: float) -> float:
 
 
 def balance(*terms: float) -> float:
-    """Sum of forces or torques; 0 where it is below ROUNDING of the largest, such as a weight and its counterweight."""
-    held = math.fsum(terms)
-    return held if abs(held) >= ROUNDING * max(map(abs, terms)) else 0.0
+    """Sum of forces or torques; 0 if below ROUNDING of the largest, as for a weight and its counterweight."""
+    total_Nm = math.fsum(terms)
+    return total_Nm if abs(total_Nm) >= ROUNDING * max(map(abs, terms)) else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class ShaftLoad:
     """Load on the mechanism's shaft: T_load = J α + T_f sgn ω + b ω + G cos θ + T_0, in Nm, rad and s.
 
-    `friction_Nm` is all dry friction, `way_per_rad` how many degrees or mm of way there are to a radian, `external_Nm`
-    the torque of an external torque of 1 Nm or force of 1 N, `own_inertia_kgm2` and `own_friction_Nm` what pinion,
-    pulley or screw have themselves of inertia and friction. At the gear T = T_load / (η ratio) where the load is
-    driven, T_load η / ratio where it drives.
+    `friction_Nm` is all dry friction, `way_per_rad` the way in degrees or mm per radian, `external_Nm` the torque of an
+    external torque of 1 Nm or force of 1 N, `own_inertia_kgm2` and `own_friction_Nm` inertia and friction of the
+    pinion, pulley or screw itself. At the gear T = T_load / (η ratio) where the load is driven, T_load η / ratio where
+    it drives.
     """
 
     inertia_kgm2: float
@@ -70,18 +70,18 @@ class ShaftLoad:
         return max(self.gravity_Nm, abs(self.constant_Nm))
 
     def rest_friction_Nm(self, torque_Nm: FloatArray | float) -> FloatArray:
-        """Torque R in Nm at the gear by which dry friction may raise or lower a torque at rest; takes the gear's.
+        """Torque R in Nm at the gear that dry friction adds to or takes from a torque at rest; takes the gear's torque.
 
-        R = ((|T_load| + T_s) / η - |T_load|) / ratio with all dry friction T_s: what it takes to set the axis in
-        motion, beside what it takes to hold it without friction.
+        R = ((|T_load| + T_s) / η - |T_load|) / ratio with all dry friction T_s: the torque that sets the axis in
+        motion, less the torque that holds it without friction.
         """
-        held = np.abs(torque_Nm)
-        friction: FloatArray = held * (1 / self.efficiency - 1) + self.friction_Nm / (self.efficiency * self.ratio)
+        at_rest = np.abs(torque_Nm)
+        friction: FloatArray = at_rest * (1 / self.efficiency - 1) + self.friction_Nm / (self.efficiency * self.ratio)
         return friction
 
     @property
     def way_at_gear_m(self) -> float:
-        """Way in m of a linear load to a radian of the gear."""
+        """Way of a linear load in m per radian of the gear."""
         return self.way_per_rad / (1000 * self.ratio)
 
 
@@ -194,7 +194,7 @@ class Linear(Mechanism):
 
     @property
     def has_idle_coefficient(self) -> bool:
-        """True where no weight rests on the guide, so that its coefficient of friction has no effect."""
+        """True where no weight rests on the guide, so that a given coefficient of friction has no effect."""
         return bool(self.friction_coefficient) and not cosine(self.incline_deg)
 
     @property

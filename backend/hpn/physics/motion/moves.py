@@ -1,4 +1,4 @@
-"""Moves from rest to rest: what a person says of each, and how long its ramps take."""
+"""Moves from rest to rest: the user's inputs of each, and the times of its ramps."""
 
 import math
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ Profile = Literal["trapezoidal", "triangular", "s_curve", "modified_sine", "dwel
 DEFAULT_JERK_SHARE = 0.5
 
 SEARCHED = 1e-13
-"""Relative room of a bound that is searched for: less than ROUNDING, so that what is exact is said exactly."""
+"""Relative accuracy of a searched bound: less than ROUNDING, so that exact bounds are given exactly."""
 
 MODIFIED_SINE_SPEED = 4 * math.pi / (4 + math.pi)
 """Largest over mean speed of a modified sine, c_v."""
@@ -86,7 +86,7 @@ class Move(Model):
 
     @property
     def way(self) -> float:
-        """Angle or distance with its sign; 0 of a dwell."""
+        """Signed angle or distance; 0 for a dwell."""
         return getattr(self, self.WAY) or 0.0
 
     @property
@@ -98,12 +98,12 @@ class Move(Model):
 
     @property
     def shortest_ramp_s(self) -> float:
-        """Time of its shorter ramp in s, half of a modified sine; of a move that moves."""
+        """Time of its shorter ramp in s, half of a modified sine; not for a dwell."""
         return (self.time_s or 0.0) / 2 if self.profile == "modified_sine" else min(self.timing.ramps_s)
 
     @property
     def followed(self) -> dict[str, float]:
-        """Time, peak speed, accelerations and times of the ramps that follow from what is given, by field."""
+        """Time, peak speed, accelerations, times of the ramps and jerk that follow from the given fields, by field."""
         if self.profile in ("dwell", "modified_sine"):
             return {}
         timing, (ramp, last) = self.timing, self._ramp_fields
@@ -125,7 +125,7 @@ class Move(Model):
 
     @property
     def _shape(self) -> Shape:
-        """How its ramps begin and end."""
+        """Share of jerk, or jerk, of its ramps."""
         if self.profile != "s_curve":
             return Shape()
         if self._jerk is not None:
@@ -133,7 +133,7 @@ class Move(Model):
         return Shape(DEFAULT_JERK_SHARE if self.jerk_share is None else self.jerk_share)
 
     def _followed_jerk(self, timing: Timing) -> dict[str, float]:
-        """Jerk of an S-curve that follows from its share, or the share from the jerk, where both ramps are alike."""
+        """Jerk of an S-curve from its share, or the share from its jerk, if both ramps are alike."""
         if self.profile != "s_curve" or timing.ramps_s[0] != timing.ramps_s[1]:
             return {}
         a, t, share = timing.peak_accelerations[0], timing.ramps_s[0], timing.jerk_shares[0]
@@ -147,7 +147,7 @@ class Move(Model):
         return self
 
     def _check_fields(self) -> None:
-        """Refuse fields that the profile has no use for, and the lack of one that it needs."""
+        """Refuse fields that the profile doesn't use, and the lack of needed ones."""
         needed = {"dwell": ("time_s",), "modified_sine": (self.WAY, "time_s")}.get(self.profile, (self.WAY,))
         ramps, unequal = ("jerk_share", self.JERK), ("acceleration_time_s", "deceleration_time_s", self.DECELERATION)
         idle: Sequence[str] = {
@@ -170,19 +170,19 @@ class Move(Model):
 
     @cached_property
     def timing(self) -> Timing:
-        """Ramps and run of a trapezoid, triangle or S-curve; raises ValidationError where there are none."""
+        """Ramps and run of a trapezoid, triangle or S-curve; raises ValidationError if impossible."""
         shape, jerk = self._shape, self._jerk
         if jerk is not None and self.jerk_share is not None:
             raise refused(self, ((self.JERK,), refusal("ramp_twice", field="jerk_share")))
         timing = self._timing_of(shape)
         if jerk is not None and (timing.least_jerk > jerk * (1 + ROUNDING) if timing else self._timing_of(Shape())):
-            self._refuse(self.JERK, "jerk_too_low", bound=_said(self._least_jerk(jerk), self.JERK))
+            self._refuse(self.JERK, "jerk_too_low", bound=_quantity(self._least_jerk(jerk), self.JERK))
         return timing or self._refuse_ramps(shape)
 
     def _least_jerk(self, low: float) -> float:
-        """Smallest jerk with which the move is possible, where `low` is not enough and some jerk is.
+        """Smallest jerk at which the move is possible, if `low` is not enough and a higher jerk is.
 
-        With more of it ramps grow shorter, and what they need grows more slowly than what they have.
+        With more jerk the ramps grow shorter, and the jerk they need grows more slowly.
         """
 
         def suffices(jerk: float) -> bool:
@@ -198,7 +198,7 @@ class Move(Model):
         return high
 
     def _timing_of(self, shape: Shape) -> Timing | None:
-        """Ramps and run with some shape of ramps; None where these leave too little time."""
+        """Ramps and run with a shape of ramps; None if these leave too little time."""
         T, speed, names = self.time_s, getattr(self, self.SPEED), self._durations
         D, V = abs(self.way), None if speed is None else speed * self.SPEED_UNIT
         if self.profile == "triangular":
@@ -224,7 +224,7 @@ class Move(Model):
 
     @property
     def _durations(self) -> list[str]:
-        """Fields that are given of those that say how long the move takes."""
+        """Given fields that determine the time of the move."""
         names = ("time_s", self.SPEED, *(name for fields in self._ramp_fields for name in reversed(fields)))
         return [name for name in names if getattr(self, name) is not None]
 
@@ -236,13 +236,13 @@ class Move(Model):
         return None if t is None and a is None else Ramp(t, math.inf if a is None else a)
 
     def _check_speed(self, D: float, T: float, V: float, ramps: Sequence[Ramp]) -> None:
-        """Refuse a speed that does not cover the way D in time T, or leaves no time for the other ramp beside one."""
+        """Refuse a speed that does not cover the way D in time T, or that leaves no time for a second ramp."""
         fastest = 2 * D / T
         if not D / T < V * (1 - ROUNDING):
-            said = (_said(speed / self.SPEED_UNIT, self.SPEED) for speed in (D / T, fastest))
-            self._refuse(self.SPEED, "move_too_slow", bound=next(said), triangle=next(said))
+            speeds = (_quantity(speed / self.SPEED_UNIT, self.SPEED) for speed in (D / T, fastest))
+            self._refuse(self.SPEED, "move_too_slow", bound=next(speeds), triangle=next(speeds))
         if ramps and fastest * (1 + ROUNDING) < V:
-            self._refuse(self.SPEED, "move_too_fast", bound=_said(fastest / self.SPEED_UNIT, self.SPEED, "down"))
+            self._refuse(self.SPEED, "move_too_fast", bound=_quantity(fastest / self.SPEED_UNIT, self.SPEED, "down"))
 
     def _refuse_ramps(self, shape: Shape) -> NoReturn:
         """Refuse ramps that together take too long: the longer one, or both where the shorter is too long by itself."""
@@ -264,23 +264,23 @@ class Move(Model):
         raise refused(self, *(self._too_slow(place, pair[place], bound, *codes) for place, bound in bounds.items()))
 
     def _too_slow(self, place: int, ramp: Ramp, bound: Ramp, by_time: str, by_acceleration: str) -> Refusal:
-        """Refusal of a ramp by the bound of the field that gives it."""
+        """Error for a ramp, with the bound of its given field."""
         time, acceleration = self._ramp_fields[place]
         if ramp.time_s is None:
-            return (acceleration,), refusal(by_acceleration, bound=_said(bound.acceleration, acceleration))
-        return (time,), refusal(by_time, bound=_said(bound.time_s or 0.0, time, "down"))
+            return (acceleration,), refusal(by_acceleration, bound=_quantity(bound.acceleration, acceleration))
+        return (time,), refusal(by_time, bound=_quantity(bound.time_s or 0.0, time, "down"))
 
     def _refuse(self, field: str, code: str, **values: Quantity | str) -> NoReturn:
         raise refused(self, ((field,), refusal(code, **values)))
 
     def _refuse_count(self, code: str, names: Sequence[str]) -> NoReturn:
-        said = ", ".join(names) or "none"
+        words = ", ".join(names) or "none"
         fields = ", ".join(("time_s", self.SPEED, self.ACCELERATION))
-        raise refused(self, ((), refusal(code, profile=self.profile, fields=fields, given=said)))
+        raise refused(self, ((), refusal(code, profile=self.profile, fields=fields, given=words)))
 
 
-def _said(value: float, field: str, rounding: Rounding = "up") -> Quantity:
-    """A bound with its unit, rounded so that what is printed will do."""
+def _quantity(value: float, field: str, rounding: Rounding = "up") -> Quantity:
+    """A bound with its unit, rounded so that the printed figure is accepted."""
     return Quantity(value, suffix_of(field), 6, rounding)
 
 

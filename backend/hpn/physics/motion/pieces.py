@@ -1,8 +1,8 @@
 """Motions as smooth pieces: angle, speed, acceleration and torque in closed form at every instant.
 
-A piece is a stretch of a move in which the jerk is constant (ramps and runs) or goes by one sine (modified sine). Its
-instants t run from `start_s` to `end_s`, in a time of its own whose 0 is where the move starts or ends, so that nothing
-is left of a speed at rest but 0. Data of a piece have shape (pieces,); functions of time broadcast.
+A piece is a stretch of a move with a constant jerk (ramps and runs) or one sine (modified sine). Its instants t run
+from `start_s` to `end_s`, in a time of its own whose 0 is where the move starts or ends, so that a speed at rest is
+exactly 0. Data of a piece have shape (pieces,); functions of time broadcast.
 """
 
 import math
@@ -20,17 +20,19 @@ from hpn.physics.motion.moves import Move
 PlaceArray = NDArray[np.intp]
 
 RAMP, RUN, BRAKE = range(3)
-"""Parts of a move, each a phase unless the torque changes its sign; of a modified sine the halves, and a dwell runs."""
+"""Parts of a move, each a phase unless the torque changes its sign; a modified sine has its halves, a dwell is
+a run.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
     """Pieces of a motion of the mechanism's shaft, in rad and s, each with the load that acts in it.
 
-    x = x_0 + ω_0 t + α_0 t²/2 + j t³/6 - S/w² sin(w t + φ) is the angle from `base`, of which cosine and sine are kept;
-    `sign` is the direction of the move, 0 of a dwell. `held_Nm` is what neither moves nor turns with the shaft:
-    friction, weight and the external load. `inertia_kgm2` is what the torque accelerates. `swings` is
-    False where no piece of the motion goes by a sine.
+    x = x_0 + ω_0 t + α_0 t²/2 + j t³/6 - S/w² sin(w t + φ) is the angle from `base`, whose cosine and sine are kept;
+    `sign` is the direction of the move, 0 for a dwell. `held_Nm` is the constant part of the torque: friction, weight
+    and the external load. `inertia_kgm2` is the accelerated inertia, `viscous_Nms` the viscous friction, `gravity_Nm`
+    the torque of the weight held level. `swings` is False if no piece has a sine.
     """
 
     swings: bool
@@ -50,16 +52,18 @@ class Pieces:
     base_sine: FloatArray
     held_Nm: FloatArray
     inertia_kgm2: FloatArray
+    viscous_Nms: FloatArray
+    gravity_Nm: FloatArray
 
     def __len__(self) -> int:
         return len(self.move)
 
-    def at(self, places: PlaceArray | NDArray[np.bool_]) -> "Pieces":
+    def at(self, places: PlaceArray | NDArray[np.bool_] | slice) -> "Pieces":
         """Some of the pieces."""
         return Pieces(self.swings, *[column[places] for column in _columns_of(self)])
 
     def windows(self, start_s: FloatArray, end_s: FloatArray) -> "Pieces":
-        """The same pieces from one instant of each to another."""
+        """The same pieces between other instants."""
         move, part, _, _, *others = _columns_of(self)
         return Pieces(self.swings, move, part, start_s, end_s, *others)
 
@@ -108,12 +112,20 @@ class Pieces:
 _columns_of = attrgetter(*[name for name in Pieces.__annotations__ if name != "swings"])
 
 
+def joined(parts: Sequence[Pieces]) -> Pieces:
+    """Pieces of motions, concatenated."""
+    if len(parts) == 1:
+        return parts[0]
+    columns = zip(*map(_columns_of, parts), strict=True)
+    return Pieces(any(one.swings for one in parts), *map(np.concatenate, columns))
+
+
 # --- From moves to pieces ---------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class _Course:
-    """Course of half a move in the direction of the way, from where it starts."""
+    """Course of half a move in the direction of the way, from its start."""
 
     start: float
     end: float
@@ -138,9 +150,10 @@ def _rows(moves: Sequence[Move], start_deg: float, load: ShaftLoad) -> Iterator[
     position = start_deg
     for place, move in enumerate(moves):
         sign = math.copysign(1.0, move.way) if move.way else 0.0
-        held = balance(load.friction_Nm * sign, load.constant_Nm, load.external_Nm * move.external)
+        constant_Nm = balance(load.friction_Nm * sign, load.constant_Nm, load.external_Nm * move.external)
         end = math.fmod(position + move.way, 360.0) if load.gravity_Nm else 0.0
-        bases = [(cosine(angle), sine(angle), held, load.inertia_kgm2) for angle in (position, end)]
+        own = constant_Nm, load.inertia_kgm2, load.viscous_Nms, load.gravity_Nm
+        bases = [(cosine(angle), sine(angle), *own) for angle in (position, end)]
         if not sign:
             yield (place, RUN, 0.0, move.time_s or 0.0, 0.0, *_coefficients(_Course(0.0, 0.0), 0.0), *bases[0])
             continue
@@ -161,7 +174,7 @@ def _coefficients(one: _Course, sign: float) -> tuple[float, ...]:
 
 
 def _mirrored(one: _Course) -> _Course:
-    """The same course backwards in time; its way is counted from where the move ends."""
+    """The same course backwards in time; its way counts from the end of the move."""
     return replace(
         one,
         start=-one.end,

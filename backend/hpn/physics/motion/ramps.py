@@ -1,8 +1,8 @@
 """Timing of a move from rest to rest: two ramps, each by its time or its acceleration, and the run between them.
 
-With ramps of t1 and t2 and a run at the speed V a move of the way D takes T, where D = V (T - (t1 + t2) / 2). A ramp by
-its acceleration a takes t = V / (k a) + a / j, where k is the mean over the peak acceleration that a share of jerk
-leaves, and j a jerk that is given in place of it, with k = 1.
+With ramps of t1 and t2 and a run at the speed V a move of the way D takes T, where D = V (T - (t1 + t2) / 2). A ramp of
+given acceleration a takes t = V / (k a) + a / j, where k is the ratio of mean to peak acceleration at a share of jerk,
+and j a jerk given in place of the share, with k = 1.
 """
 
 import math
@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 from hpn.physics.equations import ROUNDING
 
 NEXT_TO_NONE = 8 * sys.float_info.epsilon
-"""Share of a whole that is rounding alone."""
+"""Share of a whole up to which a difference is rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """How ramps begin and end: jerk acts in a share of each, half of it at either end, or has a size of its own.
+    """Ends of ramps: jerk acts in a share of each ramp, half of it at either end, or has a given size.
 
-    The jerk is in units of way per s³; infinite where the share is what is given.
+    The jerk is in units of way per s³; infinite if the share is given.
     """
 
     share: float = 0.0
@@ -28,25 +28,25 @@ class Shape:
 
     @property
     def mean(self) -> float:
-        """Mean over peak acceleration of a ramp that a share of jerk leaves."""
+        """Ratio of mean to peak acceleration of a ramp with its share of jerk."""
         return 1 - self.share / 2
 
     def peak_of(self, V: float, t: float) -> float:
         """Smallest peak acceleration of a ramp that takes the time t in s to the speed V.
 
-        V = a t - a² / j; where the jerk is too low for that, the acceleration of a share of 1.
+        V = a t - a² / j; if the jerk is too low for that, the acceleration with a share of 1.
         """
         left = 1 - 4 * V / (self.jerk * t**2)
         return V / (self.mean * t) * 2 / (1 + (math.sqrt(left) if left > NEXT_TO_NONE else 0.0))
 
     def share_of(self, a: float, t: float) -> float:
-        """Share in which jerk acts of a ramp with a peak acceleration a in the time t in s."""
+        """Share of a ramp in which jerk acts, for a peak acceleration a and the time t in s."""
         return self.share if math.isinf(self.jerk) else min(2 * a / (self.jerk * t), 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """A ramp by its time in s or its peak acceleration in units of way per s², or the time that follows from both."""
+    """A ramp by its time in s or its peak acceleration in units of way per s², or by both."""
 
     time_s: float | None = None
     acceleration: float = math.inf
@@ -58,21 +58,21 @@ class Ramp:
         return V / (shape.mean * self.acceleration) + self.acceleration / shape.jerk
 
     def peak_at(self, V: float, t: float, shape: Shape) -> float:
-        """Its peak acceleration, where it takes the time t in s to the speed V."""
+        """Peak acceleration of the ramp if it takes the time t in s to the speed V."""
         by_jerk = self.acceleration < math.inf and shape.jerk < math.inf
         return self.acceleration if by_jerk else shape.peak_of(V, t)
 
     def least_jerk(self, V: float, t: float) -> float:
-        """Smallest jerk with which it takes the time t in s to the speed V, or reaches its acceleration on the way."""
+        """Smallest jerk at which it takes the time t in s to the speed V, or reaches its acceleration on the way."""
         return self.acceleration**2 / V if self.acceleration < math.inf else 4 * V / t**2
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """Ramps and run of a move in s; its speed and, in the middle of each ramp, its accelerations by way and seconds.
+    """Ramps and run of a move in s; its peak speed, and the peak acceleration of each ramp, in units of way and s.
 
-    `jerk_shares` are the shares of the ramps in which jerk acts, `least_jerk` the smallest that suffices. `is_cut` says
-    that the speed asked for leaves no time to run, so that a triangle comes out that nobody asked for.
+    `jerk_shares` are the shares of the ramps in which jerk acts, `least_jerk` the smallest sufficient jerk. `is_cut` is
+    True where the requested speed leaves no time to run, so that an unrequested triangle results.
     """
 
     ramps_s: tuple[float, float]
@@ -90,7 +90,7 @@ class Timing:
 
 
 def equal_ramps(D: float, T: float, ramp_s: float, shape: Shape) -> Timing:
-    """Way D in time T with ramps of one length; one that leaves next to no run is half the time."""
+    """Way D in time T with equal ramps; a ramp that leaves next to no run becomes half the time."""
     times = (ramp_s, ramp_s) if T - 2 * ramp_s > ROUNDING * T else (T / 2, T / 2)
     return _of_ramps(D, T, times, (Ramp(ramp_s), Ramp(ramp_s)), shape)
 
@@ -101,14 +101,15 @@ def triangle(D: float, T: float) -> Timing:
 
 
 def at_triangle(D: float, T: float, ramps: Sequence[Ramp], shape: Shape) -> list[float]:
-    """Times in s of ramps to the speed 2 D / T of a triangle: together they may take T at most."""
+    """Times in s of ramps to a triangle's speed 2 D / T: together they may take T at most."""
     return [ramp.time_at(2 * D / T, shape) for ramp in ramps]
 
 
 def in_time(D: float, T: float, ramps: Sequence[Ramp], shape: Shape) -> Timing | None:
-    """Way D in time T with two ramps; None where they leave too little time to cover the way.
+    """Way D in time T with two ramps; None if they leave too little time for the way.
 
-    D = V (T' - s V), where T' is T less half of what the ramps take at any speed, and s V half of the rest of them.
+    D = V (T' - s V), where T' is T less half of the ramps' time that does not depend on the speed, and s V half of the
+    rest.
     """
     most = at_triangle(D, T, ramps, shape)
     if sum(most) > T * (1 + ROUNDING):
@@ -122,7 +123,7 @@ def in_time(D: float, T: float, ramps: Sequence[Ramp], shape: Shape) -> Timing |
 
 
 def at_speed(D: float, V: float, ramps: Sequence[Ramp], shape: Shape) -> Timing:
-    """Way D at the speed V with two ramps; without a run where the speed is not reached before the brake has to act."""
+    """Way D at the speed V with two ramps; without a run if the last ramp must begin before V is reached."""
     half, s = _halves(ramps, shape)
     run_s = D / V - half - s * V
     if is_cut := run_s <= ROUNDING * (half + s * V):
@@ -132,9 +133,9 @@ def at_speed(D: float, V: float, ramps: Sequence[Ramp], shape: Shape) -> Timing:
 
 
 def at_speed_in_time(D: float, T: float, V: float, ramps: Sequence[Ramp | None], shape: Shape) -> Timing | None:
-    """Way D at the speed V in time T: equal ramps, or beside one the other as what the time leaves.
+    """Way D at the speed V in time T: equal ramps, or one given ramp and the other in the remaining time.
 
-    t2 = 2 (T - D / V) - t1; None where that is nothing.
+    t2 = 2 (T - D / V) - t1; None if nothing remains.
     """
     place = 0 if ramps[0] else 1
     if (ramp := ramps[place]) is None:
@@ -148,13 +149,13 @@ def at_speed_in_time(D: float, T: float, V: float, ramps: Sequence[Ramp | None],
 
 
 def _halves(ramps: Sequence[Ramp], shape: Shape) -> tuple[float, float]:
-    """Half the time that ramps take at any speed, and half of the rest over the speed."""
+    """Half of the ramps' time that does not depend on the speed, and half of the rest over the speed."""
     fixed = math.fsum(ramp.time_at(0.0, shape) / 2 for ramp in ramps)
     return fixed, math.fsum(1 / (2 * shape.mean * ramp.acceleration) for ramp in ramps if ramp.time_s is None)
 
 
 def _of_ramps(D: float, T: float, ramps_s: tuple[float, float], ramps: Sequence[Ramp], shape: Shape) -> Timing:
-    """Way D in time T with ramps of some times, which may leave no run but for rounding."""
+    """Way D in time T with ramps of given times, without a run if only rounding remains for it."""
     first, second = ramps_s
     run_s = T - first - second
     is_cut = run_s <= ROUNDING * T

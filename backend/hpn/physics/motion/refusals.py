@@ -1,4 +1,4 @@
-"""Texts by code for a motion or a body that is not accepted, with the bound that would do."""
+"""Texts by code for a refused motion or body, with the bound that would be accepted."""
 
 from collections.abc import Mapping
 
@@ -42,5 +42,5 @@ REFUSALS: Mapping[str, str] = {
 
 
 def refusal(code: str, **values: Quantity | str) -> PydanticCustomError:
-    """Refusal of a code, for a validator to raise."""
+    """Error of a code, for a validator to raise."""
     return PydanticCustomError(code, REFUSALS[code], values)

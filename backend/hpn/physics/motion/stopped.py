@@ -1,4 +1,4 @@
-"""Torques with which a motion's load pulls, drives and opposes in an emergency stop at any instant of it."""
+"""Torques of a motion's load in an emergency stop at any instant: pulling, driving and opposing."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ class StoppedLoad:
 
 
 def stopped_load(moves: Sequence[Move], course: Course) -> StoppedLoad:
-    """Load of moves along their course; an acceleration is the largest at an end of a piece."""
+    """Load of moves along their course; the largest acceleration is at an end of a piece."""
     load, pieces = course.load, course.pieces
     externals = [load.external_Nm * move.external for move in moves]
     driving = [-torque if move.way > 0 else torque for move, torque in zip(moves, externals, strict=True) if move.way]

@@ -1,7 +1,6 @@
 """Torque over the pieces of a motion: its zeros, its extremes, its means."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,47 +10,45 @@ from hpn.physics.motion.pieces import Pieces, PlaceArray
 Function = Callable[[Pieces, FloatArray], FloatArray]
 
 
-@dataclass(frozen=True, slots=True)
-class Torque:
-    """Torque J α + b ω + G cos θ + held over pieces, and its derivatives in time."""
+def torque_at(p: Pieces, t: FloatArray) -> FloatArray:
+    """Torque J α + b ω + G cos θ + held in Nm; 0 where it is below ROUNDING of its largest term.
 
-    viscous_Nms: float
-    gravity_Nm: float
+    Thus no rounding error has a sign.
+    """
+    turning, held = p.inertia_kgm2 * p.acceleration_at(t), p.held_Nm
+    torque, largest = turning + held, np.maximum(np.abs(turning), np.abs(held))
+    if p.viscous_Nms.any():
+        rubbing = p.viscous_Nms * p.speed_at(t)
+        torque, largest = torque + rubbing, np.maximum(largest, np.abs(rubbing))
+    if p.gravity_Nm.any():
+        torque, largest = torque + p.gravity_Nm * p.cosine_at(t), np.maximum(largest, p.gravity_Nm)
+    return np.where(np.abs(torque) < ROUNDING * largest, 0.0, torque)
 
-    def at(self, p: Pieces, t: FloatArray) -> FloatArray:
-        """Torque in Nm; 0 where it is below ROUNDING of its largest term, so that no rounding error has a sign."""
-        turning, held = p.inertia_kgm2 * p.acceleration_at(t), p.held_Nm
-        torque, largest = turning + held, np.maximum(np.abs(turning), np.abs(held))
-        if self.viscous_Nms:
-            rubbing = self.viscous_Nms * p.speed_at(t)
-            torque, largest = torque + rubbing, np.maximum(largest, np.abs(rubbing))
-        if self.gravity_Nm:
-            torque, largest = torque + self.gravity_Nm * p.cosine_at(t), np.maximum(largest, self.gravity_Nm)
-        return np.where(np.abs(torque) < ROUNDING * largest, 0.0, torque)
 
-    def slope(self, p: Pieces, t: FloatArray) -> FloatArray:
-        """First derivative in Nm/s."""
-        slope = p.inertia_kgm2 * p.jerk_at(t) + self.viscous_Nms * p.acceleration_at(t)
-        return slope - self.gravity_Nm * p.sine_at(t) * p.speed_at(t) if self.gravity_Nm else slope
+def slope_at(p: Pieces, t: FloatArray) -> FloatArray:
+    """First derivative of the torque in Nm/s."""
+    slope = p.inertia_kgm2 * p.jerk_at(t) + p.viscous_Nms * p.acceleration_at(t)
+    return slope - p.gravity_Nm * p.sine_at(t) * p.speed_at(t) if p.gravity_Nm.any() else slope
 
-    def curvature(self, p: Pieces, t: FloatArray) -> FloatArray:
-        """Second derivative in Nm/s²."""
-        curvature = p.inertia_kgm2 * p.snap_at(t) + self.viscous_Nms * p.jerk_at(t)
-        if not self.gravity_Nm:
-            return curvature
-        turning = p.cosine_at(t) * p.speed_at(t) ** 2 + p.sine_at(t) * p.acceleration_at(t)
-        return curvature - self.gravity_Nm * turning
+
+def curvature_at(p: Pieces, t: FloatArray) -> FloatArray:
+    """Second derivative of the torque in Nm/s²."""
+    curvature = p.inertia_kgm2 * p.snap_at(t) + p.viscous_Nms * p.jerk_at(t)
+    if not p.gravity_Nm.any():
+        return curvature
+    turning = p.cosine_at(t) * p.speed_at(t) ** 2 + p.sine_at(t) * p.acceleration_at(t)
+    return curvature - p.gravity_Nm * turning
 
 
 # --- Zeros ------------------------------------------------------------------------------------------------------------
 
 EDGE = 1e-12
-"""Share of a piece next to its ends in which a zero is taken for one at the end."""
+"""Share of a piece next to its ends within which a zero counts as one at the end."""
 
 
-def monotone(torque: Torque, pieces: Pieces) -> Pieces:
+def monotone(pieces: Pieces) -> Pieces:
     """Pieces cut where the torque has an extreme, so that it is monotone in each."""
-    return cut_at_zeros(torque.slope, cut_at_zeros(torque.curvature, pieces))
+    return cut_at_zeros(slope_at, cut_at_zeros(curvature_at, pieces))
 
 
 def cut_at_zeros(function: Function, pieces: Pieces) -> Pieces:
@@ -68,7 +65,7 @@ def cut_at_zeros(function: Function, pieces: Pieces) -> Pieces:
 
 
 def cut(pieces: Pieces, places: PlaceArray, instants: FloatArray) -> Pieces:
-    """Pieces of which some are cut in two, each at an instant of its own; the order stays."""
+    """Pieces, some of them cut in two, each at its own instant; the order stays."""
     twice = np.ones(len(pieces), np.intp)
     twice[places] = 2
     result = pieces.at(np.repeat(np.arange(len(pieces)), twice))
@@ -114,7 +111,7 @@ NODES, WEIGHTS = (values / 2 for values in np.polynomial.legendre.leggauss(16))
 """Gauss-Legendre rule on an interval of length 1 about 0."""
 
 ERROR = 1e-13
-"""Share of a whole that halving a piece may still change of its integral."""
+"""Largest share of the whole by which halving a piece may change its integral."""
 
 
 def instants_of(pieces: Pieces) -> FloatArray:
@@ -124,7 +121,7 @@ def instants_of(pieces: Pieces) -> FloatArray:
 
 
 def summed(pieces: Pieces, values: FloatArray) -> FloatArray:
-    """Integral over each piece, shape (pieces,), of what has these values at the instants of the rule.
+    """Integral over each piece, shape (pieces,), of a function with these values at the instants of the rule.
 
     For functions without kinks: on pieces of an eighth of a turn the rule of 16 points errs by rounding alone.
     """
@@ -136,15 +133,20 @@ def integral(function: Function, pieces: Pieces) -> FloatArray:
     return summed(pieces, function(pieces.transposed, instants_of(pieces)))
 
 
-def halved_integral(function: Function, pieces: Pieces, once: FloatArray, whole: FloatArray) -> FloatArray:
-    """Integral of a function that is not smooth at the ends of pieces, shape (pieces,); `once` is that of one rule.
+def halved_integral(
+    function: Function, pieces: Pieces, motion: PlaceArray, once: FloatArray, whole: FloatArray
+) -> FloatArray:
+    """Integral of a function that is not smooth at the ends of pieces, shape (pieces,); `once` is the result of one
+    rule.
 
     They are halved until nothing changes by more than ERROR of `whole`, the sum that an integral is part of. A zero at
-    an end leaves one half of two at each step; where more are left the torque is nothing but rounding errors.
+    an end leaves one half of two at each step; a motion with more left has a torque of rounding errors only. `motion`
+    is the motion of each piece.
     """
     result, before, part = once.copy(), once, pieces
     owner = np.arange(len(pieces))
-    while 0 < owner.size <= 4 * len(pieces):
+    most = 4 * np.bincount(motion)
+    while owner.size:
         middle = (part.start_s + part.end_s) / 2
         halves = part.at(np.tile(np.arange(owner.size), 2)).windows(
             np.concatenate((part.start_s, middle)), np.concatenate((middle, part.end_s))
@@ -152,6 +154,8 @@ def halved_integral(function: Function, pieces: Pieces, once: FloatArray, whole:
         after = integral(function, halves)
         change = after.reshape(2, -1).sum(axis=0) - before
         np.add.at(result, owner, change)
-        left = np.tile(np.abs(change) > ERROR * whole[owner], 2)
+        left = np.abs(change) > ERROR * whole[owner]
+        few = 2 * np.bincount(motion[owner[left]], minlength=len(most)) <= most
+        left = np.tile(left & few[motion[owner]], 2)
         owner, before, part = np.tile(owner, 2)[left], after[left], halves.at(left)
     return result

@@ -1,4 +1,4 @@
-"""A motion over time for whoever draws it: at both ends of every piece, where its extremes are, and in between."""
+"""A motion over time for drawings: at both ends of every piece, where its extremes are, and in between."""
 
 from dataclasses import dataclass, replace
 
@@ -9,17 +9,17 @@ from hpn.physics.motion.course import Course
 from hpn.physics.motion.mechanisms import RPM
 from hpn.physics.motion.motor import share_of_torque
 from hpn.physics.motion.pieces import Pieces, PlaceArray
-from hpn.physics.motion.torque import Torque, monotone
+from hpn.physics.motion.torque import monotone, torque_at
 
 MOST_INSTANTS, MOST_POINTS = 13, 4000
-"""Instants of a piece, and those of all pieces together, as long as that leaves each its two ends."""
+"""Instants of a piece, and of all pieces together; each piece keeps at least its two ends."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trace:
     """Angle from the start, speed, acceleration and torque at the gear's output, signed, shape (pieces, instants).
 
-    `phase` (pieces,) says which phase each piece is part of. Every extreme of a piece is at one of its ends.
+    `phase` (pieces,) is the phase of each piece. Every extreme of a piece is at one of its ends.
     """
 
     phase: PlaceArray
@@ -31,7 +31,7 @@ class Trace:
 
 
 def starts(of: PlaceArray) -> PlaceArray:
-    """Places at which a phase or a move begins, of what each piece or phase is part of."""
+    """Places at which a phase or a move begins; `of` is the phase of each piece, or the move of each phase."""
     return np.flatnonzero(np.diff(of, prepend=-1))
 
 
@@ -45,15 +45,15 @@ def motor_trace(
 ) -> tuple[Trace, FloatArray]:
     """Trace, and torque in Nm of a motor along it, its own inertia included; `efficiency` broadcasts to (phases,).
 
-    The pieces are cut where that torque has an extreme.
+    The pieces are cut at extremes of this torque.
     """
     p, load = course.pieces, course.load
     share = share_of_torque(course, np.array([ratio]), efficiency)[0]
     own = share[course.phase] * course.factor
     inertia = motor_inertia_kgm2 * ratio
-    # The motor's torque is that of a load whose inertia is larger by what the motor's comes to at the mechanism.
+    # The motor's torque is that of a load whose inertia includes the motor's, referred to the mechanism.
     with_motor = replace(p, inertia_kgm2=p.inertia_kgm2 + inertia * load.ratio / own, move=np.arange(len(p)))
-    cut = monotone(Torque(load.viscous_Nms, load.gravity_Nm), with_motor)
+    cut = monotone(with_motor)
     places = cut.move
     trace = _along(course, p.at(places).windows(cut.start_s, cut.end_s), course.phase[places], course.factor[places])
     without_load = no_load_torque_Nm * np.sign(course.speed_rpm)[trace.phase][:, None]
@@ -62,9 +62,9 @@ def motor_trace(
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """Signed torque in Nm and acceleration in rad/s² at the gear's output, in a phase by its place, in its sense.
+    """Signed torque in Nm and acceleration in rad/s² at the gear's output, in a phase given by its place.
 
-    `is_driven` says that the motor drives the load, which costs T / (i η), and not the load the motor, T η / i.
+    `is_driven` is True where the motor drives the load, T / (i η), and False where the load drives the motor, T η / i.
     """
 
     phase: int
@@ -107,5 +107,5 @@ def _along(course: Course, pieces: Pieces, phase: PlaceArray, factor: FloatArray
         angle_rad=(before[0] + turned) * load.ratio,
         speed_rpm=rows.speed_at(t) * moving * load.ratio / RPM,
         acceleration_rad_per_s2=rows.acceleration_at(t) * moving * load.ratio,
-        torque_Nm=Torque(load.viscous_Nms, load.gravity_Nm).at(rows, t) * factor[:, None],
+        torque_Nm=torque_at(rows, t) * factor[:, None],
     )

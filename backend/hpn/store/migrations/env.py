@@ -1,4 +1,5 @@
-"""Run by Alembic: migrates over the connection, and inside the transaction, that `upgrade.py` has opened."""
+"""Environment that Alembic runs: migrates over the connection, and inside the transaction, that `upgrade.py` has
+opened."""
 
 from alembic import context
 

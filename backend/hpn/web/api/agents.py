@@ -1,4 +1,4 @@
-"""`/mcp`: the tools for agents over HTTP, behind the keys, rates and bounds of a selection; `/llms.txt` leads there."""
+"""`/mcp`: tools for agents over HTTP, with the keys, rates and limits of a selection; `/llms.txt` leads there."""
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -21,7 +21,7 @@ from hpn.web.door.visit import absolute
 router = APIRouter(include_in_schema=False, dependencies=[admit("calculator")])
 
 EXCHANGE = "hpn.agents.over_http:exchange"
-"""Function that needs the extra, by its name."""
+"""Name of the function that needs the extra."""
 
 LLMS = """# HPN Select
 
@@ -51,7 +51,7 @@ async def speak(request: Request) -> Response:
     require_known_origin(request)
     body = await read_body(request)
     require_bounded(body)
-    with suppress(ValueError):  # the protocol has an answer to what is no JSON
+    with suppress(ValueError):  # the protocol itself answers malformed JSON
         require_unique(body, from_json(body))
     exchange = await compute(request, "pages", resolve_name, EXCHANGE)  # takes a second, the first time
     mistakes: list[Exception] = []
@@ -66,10 +66,10 @@ async def speak(request: Request) -> Response:
             mistakes.append(error)
             raise
 
-    sent = await exchange(call, request.scope, body)
+    reply = await exchange(call, request.scope, body)
     if mistakes:
         raise mistakes[0]
-    return Response(sent.content, sent.status, sent.headers)
+    return Response(reply.content, reply.status, reply.headers)
 
 
 @router.get("/llms.txt")

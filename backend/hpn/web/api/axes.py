@@ -1,10 +1,11 @@
-"""Axes of machines over REST: add, read, replace, change one or many, remove, bring back."""
+"""Axes of machines over REST: add, read, replace, change one or many, remove, restore."""
 
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query
-from pydantic import Field, RootModel
+from pydantic import Field, RootModel, TypeAdapter, WrapValidator
+from pydantic_core import PydanticCustomError
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -12,7 +13,7 @@ from hpn import ENGINE_VERSION
 from hpn.application.faults import NO_FIELD
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import AxisQuestion, answers
-from hpn.documents.axis import MOST_AXES, MOST_BYTES, READ_ONLY, Axis
+from hpn.documents.axis import MOST_AXES, MOST_BYTES, Axis
 from hpn.documents.merge import resolve
 from hpn.engine.selection import Selection
 from hpn.store import AxisDraft, Change, Machine, MachineDraft, Once, SavedAxis
@@ -34,8 +35,8 @@ from hpn.web.machines import (
     axis_of,
     axis_tag,
     editable,
-    found,
     guarded,
+    machine_of,
     no_axis,
     once_of,
     require_document,
@@ -59,10 +60,23 @@ class AxisPatch(RootModel[dict[str, Any]]):
     """Merge patch of an axis."""
 
 
+_Numbers = Annotated[tuple[int, ...], Field(max_length=MOST_AXES)]
+_LIST = TypeAdapter[tuple[int, ...]](_Numbers)
+
+
+def _of_either(value: Any, _: Any) -> tuple[int, ...] | Literal["all"]:
+    """Numbers of axes, or all, validated by type, so that an error has its place in the request."""
+    if value == "all":
+        return "all"
+    if not isinstance(value, list):
+        raise PydanticCustomError("axis_numbers", 'must be a list of numbers, such as [1, 2], or "all"')
+    return _LIST.validate_python(value)
+
+
 class ManyAxes(Model):
     """A change of several axes at once."""
 
-    numbers: Annotated[tuple[int, ...], Field(max_length=MOST_AXES)] | Literal["all"] = Field(
+    numbers: Annotated[_Numbers | Literal["all"], WrapValidator(_of_either)] = Field(
         description="Numbers of the axes, or all.", examples=[[1, 2]]
     )
     patch: dict[str, Any] = Field(
@@ -71,7 +85,7 @@ class ManyAxes(Model):
 
 
 def _tagged(machine: Machine, axis: SavedAxis) -> Response:
-    """An axis as it is, with the tag of its own values."""
+    """Response with an axis and the tag of its own values."""
     body = encode(replies.axis(axis, common_of(machine)))
     return JSONBytes(body, headers={"ETag": axis_tag(machine, axis), "Cache-Control": "no-cache"})
 
@@ -92,15 +106,15 @@ REFUSED = (400, 403, 404, 408, 412, 413, 415, 422)
     responses=schemas.answers(*(*REFUSED, 410), status=201, headers=schemas.headers("Location", "ETag")),
 )
 async def add_axes(request: Request, id: schemas.Id) -> Response:
-    """Adds axes behind the others under new numbers; the number of a removed axis brings that back as it was.
+    """Appends axes under new numbers. An axis with the number of a removed one restores the removed axis as it was.
 
-    A selection keeps its one axis: a new machine, whose address is in `Location`, begins with it.
+    A selection keeps its single axis: the request creates a new machine that begins with it; see `Location`.
     """
     body = await read_body(request, maximum_bytes=MOST_BYTES)
-    sent = await compute(request, "pages", parsed, SentAxes, body, require_machine)
-    if (selection := await found(request, id, kind=None)).kind == "selection":
-        return await _machine_of(request, selection, sent, once_of(request, body))
-    back = [axis.number for axis in sent.axes if axis.number is not None]
+    axes = await compute(request, "pages", parsed, SentAxes, body, require_machine)
+    if (selection := await machine_of(request, id, kind=None)).kind == "selection":
+        return await _as_machine(request, selection, axes, once_of(request, body))
+    back = [axis.number for axis in axes.axes if axis.number is not None]
     if len(set(back)) < len(back):
         raise Problem(422, "axes must name each number once", [(("axes",), "must name each number once")])
     gone = [await _removed(request, id, number) for number in back]
@@ -109,7 +123,7 @@ async def add_axes(request: Request, id: schemas.Id) -> Response:
     def make(machine: Machine) -> Change:
         require_document(request, machine)
         common = common_of(machine)
-        new = [axis for axis in sent.axes if axis.number is None]
+        new = [axis for axis in axes.axes if axis.number is None]
         questions = [AxisQuestion(resolve(axis.application, common, axis.without), axis.ordering_code) for axis in new]
         questions += [AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in gone]
         answered = answers(questions, catalogue)
@@ -122,23 +136,23 @@ async def add_axes(request: Request, id: schemas.Id) -> Response:
     return JSONBytes(encode(replies.NumbersReply(tuple(numbers))), 201, {"ETag": tag})
 
 
-async def _machine_of(request: Request, selection: Machine, sent: SentAxes, once: Once | None) -> Response:
-    """A new machine that begins with a selection."""
+async def _as_machine(request: Request, selection: Machine, axes: SentAxes, once: Once | None) -> Response:
+    """Save a new machine that begins with a selection's axis; response with its address."""
     draft = await compute(
-        request, "batches", _begun, selection, sent, request.app.state.catalogue, request.state.api_key
+        request, "batches", _begun, selection, axes, request.app.state.catalogue, request.state.api_key
     )
     id: str = await guarded(request.app.state.store.add_machine(draft, once))
     note(request, machine=id)
-    headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await found(request, id, []))}
-    numbers = tuple(range(2, 2 + len(sent.axes)))
+    headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await machine_of(request, id, []))}
+    numbers = tuple(range(2, 2 + len(axes.axes)))
     return JSONBytes(encode(replies.NumbersReply(numbers)), 201, headers)
 
 
-def _begun(selection: Machine, sent: SentAxes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
+def _begun(selection: Machine, axes: SentAxes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
     same = AxisDraft.__dataclass_fields__
     first = [AxisDraft(**{name: getattr(axis, name) for name in same}) for axis in selection.items]
     return MachineDraft(
-        axes=[*first, *drafts_of(sent.axes, common_of(selection), catalogue)],
+        axes=[*first, *drafts_of(axes.axes, common_of(selection), catalogue)],
         engine_version=ENGINE_VERSION,
         catalogue_version=catalogue.version,
         title=selection.title,
@@ -168,7 +182,7 @@ async def _removed(request: Request, id: str, number: int) -> SavedAxis:
     responses=schemas.answers(403, 404, 422, headers=TAGGED),
 )
 async def read_axis(request: Request, id: schemas.Id, number: Number) -> Response:
-    """An axis with its own part, what it resolves to, and its answer. Its ETag stands for its own values."""
+    """An axis with its own values, its resolved application and its answer. Its ETag covers its own values."""
     return _tagged(*await axis_of(request, id, number))
 
 
@@ -181,7 +195,7 @@ async def read_axis(request: Request, id: schemas.Id, number: Number) -> Respons
     responses=schemas.answers(403, 404, 409, 422),
 )
 async def read_selection(request: Request, id: schemas.Id, number: Number) -> Response:
-    """The answer of POST /api/v1/select to the axis; 409 for an axis that is open."""
+    """Reply of POST /api/v1/select for the axis; 409 for an open axis."""
     machine, axis = await axis_of(request, id, number)
     body = await compute(request, "pages", selection_of, machine, axis, request.app.state.catalogue)
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
@@ -197,10 +211,10 @@ async def read_selection(request: Request, id: schemas.Id, number: Number) -> Re
     responses=schemas.answers(*REFUSED, headers=TAGGED),
 )
 async def put_axis(request: Request, id: schemas.Id, number: Number) -> Response:
-    """Replaces an axis by what is sent; `number`, `resolved` and what follows it are ignored."""
+    """Replaces an axis by the body; `number`, `resolved`, `answer`, `updated` and `updated_by` are ignored."""
     body = await read_body(request)
-    sent = await compute(request, "pages", parsed, Axis, body)
-    whole = {name: getattr(sent, name) for name in FIELDS}
+    new = await compute(request, "pages", parsed, Axis, body)
+    whole = {name: getattr(new, name) for name in FIELDS}
     return await _changed(request, id, number, lambda axis: whole)
 
 
@@ -221,14 +235,14 @@ async def change_axis(request: Request, id: schemas.Id, number: Number) -> Respo
 
 
 def _patch_in(body: bytes) -> dict[str, Any]:
-    """A merge patch of an axis, whose names are those of its fields."""
+    """Merge patch of an axis; Problem 422 for a name that is not one of its fields."""
     patch = parsed(AxisPatch, body).root
     _require_fields(patch)
     return patch
 
 
 async def _changed(request: Request, id: str, number: int, values: Callable[[SavedAxis], dict[str, Any]]) -> Response:
-    """An axis after a change of its own values."""
+    """Change the own values of an axis; response with the axis."""
 
     def require(machine: Machine, axis: SavedAxis) -> None:
         require_match(request, axis_tag(machine, axis))
@@ -247,7 +261,7 @@ async def _changed(request: Request, id: str, number: int, values: Callable[[Sav
     responses=schemas.DELETED | schemas.problems(403, 404, 409, 412, 422),
 )
 async def remove_axis(request: Request, id: schemas.Id, number: Number) -> Response:
-    """Removes an axis. Its number is never used again; POST with it brings the axis back."""
+    """Removes an axis. Its number is never given to another axis; a POST with this number restores the axis."""
 
     def make(machine: Machine) -> Change:
         if not machine.items:
@@ -268,19 +282,19 @@ async def remove_axis(request: Request, id: schemas.Id, number: Number) -> Respo
     operation_id="changeAxes",
     summary="Change several axes",
     openapi_extra=schemas.request_body(ManyAxes)
-    | {"parameters": [schemas.header("If-Match", "Tag of the machine; needed, but for a dry run.")]},
+    | {"parameters": [schemas.header("If-Match", "Tag of the machine; required except for a dry run.")]},
     response_model=replies.EffectReply,
     responses=schemas.answers(*REFUSED, 428, headers=TAGGED),
 )
 async def change_axes(
     request: Request,
     id: schemas.Id,
-    dry: Annotated[bool, Query(description="1: the effect alone; nothing is saved.")] = False,
+    dry: Annotated[bool, Query(description="1: returns the effect and saves nothing.")] = False,
 ) -> Response:
-    """Changes many axes at once by one merge patch, and says the effect; with `dry=1` the effect alone."""
+    """Applies one merge patch to many axes and returns the effect; `dry=1` saves nothing."""
     body = await read_body(request, JSON, maximum_bytes=MOST_BYTES)
-    sent = await compute(request, "pages", parsed, ManyAxes, body, require_machine)
-    _require_fields(sent.patch, "patch")
+    changes = await compute(request, "pages", parsed, ManyAxes, body, require_machine)
+    _require_fields(changes.patch, "patch")
     if not dry and "if-match" not in request.headers:
         raise Problem(428, "send the machine’s ETag as If-Match")
     catalogue: Catalogue = request.app.state.catalogue
@@ -288,8 +302,8 @@ async def change_axes(
 
     def make(machine: Machine) -> Change:
         require_document(request, machine)
-        axes = named(machine, sent.numbers)
-        drafts = drafted([(axis, after(axis, sent.patch)) for axis in axes], common_of(machine), catalogue)
+        axes = named(machine, changes.numbers)
+        drafts = drafted([(axis, after(axis, changes.patch)) for axis in axes], common_of(machine), catalogue)
         changed = [(axis.number, axis.version, draft) for axis, draft in zip(axes, drafts, strict=True)]
         effects.append(effect_of(machine, {number: draft for number, _, draft in changed}, catalogue))
         return Change(machine.version, author_of(request, machine), changed=changed)
@@ -303,7 +317,7 @@ async def change_axes(
 
 
 def _require_fields(patch: Mapping[str, Any], *place: str) -> None:
-    """Raise Problem 422 for a patch of something that no axis has; what is given alone is ignored."""
+    """Raise Problem 422 for a patch of an unknown field; read-only fields are ignored."""
     for name in patch:
-        if name not in {*FIELDS, *READ_ONLY, "number"}:
+        if name not in {*FIELDS, *Axis.read_only, "number"}:
             raise Problem(422, f"{name!r:.80} is not a field of an axis", [((*place, name), NO_FIELD)])

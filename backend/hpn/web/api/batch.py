@@ -27,7 +27,7 @@ from hpn.application.faults import unknown_field
 from hpn.application.unique import RepeatedNameError
 from hpn.catalogue import Catalogue
 from hpn.engine.batch import judge_batch
-from hpn.engine.selection import Judged, Outcome
+from hpn.engine.selection import Judgement, Outcome
 from hpn.links.writer import to_link
 from hpn.web import spool
 from hpn.web.api import schemas
@@ -48,16 +48,16 @@ from hpn.web.door.problems import MAXIMUM_ERRORS, Problem
 from hpn.web.settings import Settings
 
 SLICE_ITEMS, SLICE_SECONDS = 256, 0.25
-"""Items that are evaluated in one go, and the time for reading them: a motion may take half a second."""
+"""Items that are evaluated in one slice, and maximum time for reading them: a motion may take half a second."""
 
 MEMORY_BYTES = 512 * 1024
 SHARES = 7
-"""Bodies of lines that fill the disk together."""
+"""Number of largest bodies of lines that together fill the disk's share."""
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 SHAPE = 'the body must be {"applications": [ … ]}'
 MOST_BESIDE = 64 * 1024
-"""Bytes of a body beside its applications."""
+"""Maximum bytes of a body beside its applications."""
 
 NO_NUMBERS = re.compile(rb'"[^"\\]*+(?:\\.[^"\\]*+)*+"|-?(?:NaN|Infinity)', re.DOTALL)
 RETRY_SECONDS = 5
@@ -74,9 +74,10 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ba
     responses=schemas.batch_answers(400, 408, 413, 415, 422),
 )
 async def select_batch(request: Request) -> Response:
-    """One line per application; an error in one never affects the others.
+    """Returns one line per application; an error in one application never affects the others.
 
-    As JSON up to 10000 applications; as newline-delimited JSON any number, answered when the body is in.
+    JSON takes up to 10000 applications. Newline-delimited JSON takes any number; its answer starts when the whole body
+    has arrived.
     """
     state: State = request.app.state
     settings: Settings = state.settings
@@ -92,7 +93,7 @@ async def select_batch(request: Request) -> Response:
 
 
 async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
-    """Result lines of a batch, a slice at a time, so that others get their turn and one that was left ends."""
+    """Result lines of a batch, made in slices, so that others get their turn and an abandoned batch ends."""
     settings: Settings = state.settings
     deadline = time.monotonic() + settings.batch_seconds
     texts = await pool.run(items_of, body, settings.maximum_batch_count)
@@ -110,9 +111,9 @@ async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
 
 
 def items_of(body: bytes, most: int) -> list[Raw]:
-    """Texts of the items, which stay unparsed: as Python objects, 32 MB of JSON can be a gigabyte.
+    """Texts of the items, unparsed: as Python objects, 32 MB of JSON can take a gigabyte.
 
-    Problem 400 for what is no JSON, 413 for more than `most`, 422 for another shape.
+    Raises Problem 400 for malformed JSON, 413 for more than `most` items, 422 for another shape.
     """
     try:
         body, items = _cut(body, _shape(most))
@@ -130,7 +131,7 @@ def items_of(body: bytes, most: int) -> list[Raw]:
 
 
 def _cut(body: bytes, shape: Any) -> tuple[bytes, list[Raw]]:
-    """A body and its items; numbers that JSON has not, such as NaN, are there as ones that no field takes."""
+    """Body and its items; numbers unknown to JSON, such as NaN, are replaced by 1e999, which no field accepts."""
     try:
         document = msgspec.json.decode(body, type=shape)
     except msgspec.DecodeError:
@@ -144,14 +145,14 @@ def _cut(body: bytes, shape: Any) -> tuple[bytes, list[Raw]]:
 
 @cache
 def _shape(most: int) -> Any:
-    """Type of a body with so many items at most: a list would first hold any number of them."""
+    """Type of a body with at most `most` items: a list would first take any number of items into memory."""
     fields = [(f"item_{number}", Raw | UnsetType, UNSET) for number in range(most)]
     items = msgspec.defstruct("Items", fields, array_like=True, forbid_unknown_fields=True)
     return msgspec.defstruct("Body", [("applications", items | UnsetType, UNSET)])
 
 
 def _beside(body: bytes, items: Sequence[Raw]) -> bytes:
-    """A body without its items, of which each is a part."""
+    """Body without its items; each item is a slice of the body's memory."""
     if not items:
         return body
     whole, first, last = (np.frombuffer(part, np.uint8) for part in (body, items[0], items[-1]))
@@ -160,8 +161,8 @@ def _beside(body: bytes, items: Sequence[Raw]) -> bytes:
 
 
 def _require_alone(beside: bytes) -> None:
-    """Raise Problem 422 for a body without a list of applications, or with another field beside it, and
-    RepeatedNameError for two of them."""
+    """Raise Problem 422 for a body without a list of applications, or with another field, and RepeatedNameError for two
+    lists."""
     if len(beside) > MOST_BESIDE:
         raise Problem(422, f"{SHAPE} alone")
     others = msgspec.json.decode(beside, type=dict[str, Raw])
@@ -175,15 +176,15 @@ def _require_alone(beside: bytes) -> None:
 
 
 class _Item(NamedTuple):
-    """An item of a batch by its own reference, and the line that it stands in: what it asks, or what is wrong."""
+    """Item of a batch with its reference and its line: its content, or its problem."""
 
     reference: str | None
-    asked: BatchItem | Problem
+    content: BatchItem | Problem
     line: int = 0
 
 
 def _item(text: bytes, most: int, line: int = 0) -> _Item:
-    """An item of so many bytes at most as `select` reads an application, in the same order of its refusals."""
+    """Item of at most `most` bytes, read as `select` reads an application, with the same order of checks."""
     reference = None
     try:
         if len(text) > most:
@@ -207,7 +208,7 @@ def _item(text: bytes, most: int, line: int = 0) -> _Item:
 
 
 def _evaluated(items: Iterator[_Item | None], state: State) -> bytes | None:
-    """Result lines of the next items, as many as can be read in time; None at the end."""
+    """Result lines of the next items, as many as can be read in SLICE_SECONDS; None at the end."""
     end, slice = time.monotonic() + SLICE_SECONDS, list[_Item]()
     for item in items:
         slice += [item] if item else []
@@ -223,16 +224,18 @@ def _evaluated(items: Iterator[_Item | None], state: State) -> bytes | None:
 
 def _lines_of(items: Sequence[_Item], catalogue: Catalogue) -> list[BatchLine]:
     """Result lines of items, in their order."""
-    judged = iter(judge_batch([item.asked for item in items if isinstance(item.asked, BatchItem)], catalogue, _brief))
-    return [_line(item, next(judged) if isinstance(item.asked, BatchItem) else item.asked) for item in items]
+    judged = iter(
+        judge_batch([item.content for item in items if isinstance(item.content, BatchItem)], catalogue, _brief)
+    )
+    return [_line(item, next(judged) if isinstance(item.content, BatchItem) else item.content) for item in items]
 
 
-def _brief(judged: Judged) -> tuple[Outcome, str]:
+def _brief(judged: Judgement) -> tuple[Outcome, str]:
     return judged.outcome(), to_link(judged.application)
 
 
 def _line(item: _Item, outcome: tuple[Outcome, str] | InputError | Problem) -> BatchLine:
-    """Result line of an item; a problem without a reference names the line, since blank ones have no result."""
+    """Result line of an item; a problem without a reference names the line, as blank lines have no result."""
     if isinstance(outcome, tuple):
         brief, link = outcome
         return BatchLine(item.reference, "ok", *brief, link=link)
@@ -247,7 +250,7 @@ def _line(item: _Item, outcome: tuple[Outcome, str] | InputError | Problem) -> B
 
 
 def items_of_lines(file: BinaryIO, most: int) -> Iterator[_Item | None]:
-    """Items of lines, of so many bytes at most; None for a blank one."""
+    """Yield the items of lines of at most `most` bytes; None for a blank line."""
     for number in count(1):
         line = file.readline(most + 2)
         is_cut = len(line) == most + 2 and not line.endswith(b"\n")
@@ -260,18 +263,18 @@ def items_of_lines(file: BinaryIO, most: int) -> Iterator[_Item | None]:
 
 
 class LineAnswers(StreamingResponse):
-    """A line for each line of a body, which has been set aside: most clients send everything before they read.
+    """Answer line for each line of a body, which is set aside first: most clients send everything before they read.
 
-    A client that does not read for the seconds of the settings gets no more.
+    The answer ends if the client reads nothing for the time of the settings.
     """
 
-    def __init__(self, request: Request, file: BinaryIO, held: ExitStack) -> None:
-        self._request, self._held = request, held
+    def __init__(self, request: Request, file: BinaryIO, resources: ExitStack) -> None:
+        self._request, self._held = request, resources
         super().__init__(self._pieces(file), media_type=NDJSON[0], headers={"Cache-Control": "no-store"})
 
     @classmethod
     async def to(cls, request: Request) -> "LineAnswers":
-        """Answers to a request; Problem as `pass_body` says, 413 or 503 where the disk has no room for the body."""
+        """Answers to a request; Problem as `pass_body` raises, 413 or 503 if the disk has no room for the body."""
         state: State = request.app.state
         settings: Settings = state.settings
         with ExitStack() as stack, spool.usable():
@@ -281,7 +284,7 @@ class LineAnswers(StreamingResponse):
 
             async def take(piece: bytes) -> None:
                 share.take(len(piece))
-                await pool_of(request, "pages").run(file.write, piece)  # whose work is short
+                await pool_of(request, "pages").run(file.write, piece)  # this pool's work is short
 
             seconds, most = settings.body_seconds, state.disk.total // SHARES
             await pass_body(request, take, maximum_bytes=most, pause_seconds=seconds, seconds=seconds)
@@ -296,12 +299,12 @@ class LineAnswers(StreamingResponse):
             yield piece
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send them while the client reads, and give back what was set aside."""
+        """Send the lines while the client reads; then give back the disk's share and the place in the pool."""
         seconds: float = self._request.app.state.settings.body_seconds
 
         async def send_in_time(message: Message) -> None:
             async with asyncio.timeout(seconds):
                 await send(message)
 
-        with self._held, suppress(TimeoutError, Problem):  # the server ends a connection whose answer has no end
+        with self._held, suppress(TimeoutError, Problem):  # the server closes the connection of an incomplete answer
             await while_present(self._request, self.stream_response(send_in_time))

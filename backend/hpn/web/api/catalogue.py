@@ -1,4 +1,4 @@
-"""The catalogue over REST: every gear, one gear, and the envelopes of a size's output bearing."""
+"""Catalogue over REST: every gear, one gear, and the envelopes of a size's output bearing."""
 
 import dataclasses
 from typing import Annotated
@@ -43,7 +43,8 @@ async def catalogue(request: Request) -> Response:
     responses=schemas.tagged(404, 422),
 )
 async def gear(request: Request, designation: schemas.Designation) -> Response:
-    """One gear, by its designation in any of the printed spellings: by itself, and as the list has it."""
+    """One gear by its designation, in any of the printed spellings: as a single object and in the form of the
+    catalogue."""
     book: Catalogue = request.app.state.catalogue
     match = gear_named(designation, book)
     return conditional(request, encode(one_gear(match, book)))
@@ -58,7 +59,7 @@ async def gear(request: Request, designation: schemas.Designation) -> Response:
     responses=schemas.tagged(404, 422),
 )
 async def bearing_envelopes(request: Request, size: schemas.Size, query: Annotated[EnvelopeQuery, Query()]) -> Response:
-    """Permitted constant load at this speed and life: one curve per load coefficient, from axial to radial axis."""
+    """Permitted constant load at a speed and life: one curve per load coefficient, from axial to radial axis."""
     book: Catalogue = request.app.state.catalogue
     gear = book.find_size(size)
     if gear is None:
@@ -73,13 +74,13 @@ async def bearing_envelopes(request: Request, size: schemas.Size, query: Annotat
 
 
 def one_gear(gear: Gear, catalogue: Catalogue) -> OneGearReply:
-    """A gear by itself, and as the list has it."""
+    """Reply with a gear by itself, and in the form of the list."""
     own = {field.name: getattr(gear, field.name) for field in dataclasses.fields(gear)}
     return OneGearReply(**own, catalogue_version=catalogue.version, gears=(gear,))
 
 
 def gear_named(designation: str, catalogue: Catalogue) -> Gear:
-    """Gear of a designation in any of the printed spellings; Problem 404 where the catalogue has none."""
+    """Gear by its designation in any printed spelling; Problem 404 if the catalogue lacks it."""
     match = catalogue.find(designation)
     if match is None:
         raise Problem(404, f"the catalogue has no gear {designation[:60]!r}; a designation is written like HPN-20A-5")

@@ -1,4 +1,4 @@
-"""Selections as files: report, workbook and Asset Administration Shell, of what is saved, posted, or in a link."""
+"""Files of selections: report, workbook and Asset Administration Shell of a saved, posted or linked application."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
@@ -8,7 +8,6 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 from fastapi import APIRouter, Depends, Query
-from msgspec import structs
 from pydantic import ValidationError
 from starlette.requests import Request
 from starlette.responses import Response
@@ -16,9 +15,11 @@ from starlette.responses import Response
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import ordering_code
-from hpn.engine.selection import judge, select
+from hpn.engine.selection import select, with_gear
+from hpn.files import formats
 from hpn.files.aas import Metamodel
-from hpn.files.export import DIGITS, Export, ExportTitle, made_by
+from hpn.files.export import DIGITS, Export, ExportTitle
+from hpn.files.formats import FileFormat
 from hpn.links.labels import query_of as query_of_labels
 from hpn.links.writer import to_link
 from hpn.store import SavedSelection
@@ -37,11 +38,11 @@ SCHEMA_TYPE = "application/schema+json"
 
 Lang = Annotated[Literal["en", "de"] | None, Query(description="Language; by default the browser’s.")]
 Make = Callable[[], Any]
-"""Makes what a file is of: the export of a selection or machine, or a document."""
+"""Function that makes a file's subject: the export of a selection or machine, or a document."""
 
 
 Options = dict[str, Any]
-"""Options of a kind of file beside its language, by parameter of the function that makes it."""
+"""Options of a kind of file beside its language, by parameters of the function that makes it."""
 
 
 def _nothing() -> Options:
@@ -49,56 +50,53 @@ def _nothing() -> Options:
 
 
 def _metamodel(
-    aas: Annotated[Metamodel, Query(description="Version of the AAS metamodel in whose namespace it is.")] = "3.0",
+    aas: Annotated[
+        Metamodel, Query(description="Version of the AAS metamodel whose namespace the package uses.")
+    ] = "3.0",
 ) -> Options:
     return {"metamodel": aas}
 
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """A kind of file: its name, what the API calls it, its media type, what it is, the function that makes it in a
-    process beside the service, the extra for that, and what of it may be chosen; its `stem` where it is of no gear.
+    """Kind of file: file name, noun in operation ids, media type, summary, format (made beside the service), options,
+    and the `stem` of its name, blank for files named after a gear.
     """
 
     name: str
     noun: str
     media_type: str
     summary: str
-    maker: str
-    extra: str
+    format: FileFormat
     disposition: str = "attachment"
     options: Callable[..., Options] = _nothing
-    is_translated: bool = True
     stem: str = ""
 
     def named(self, export: Any) -> str:
-        """File name for a download; ASCII, whatever the selection is called."""
+        """File name for a download; always ASCII."""
         return f"{self.stem or export.candidate.designation}.{self.name.rpartition('.')[2]}"
 
     def content(self, export: Any, reader: Reader, chosen: Options) -> "partial[bytes]":
-        """The call that makes the file: one that a process can take which knows nothing of the web."""
-        return partial(made_by, self.maker, export, *([reader] if self.is_translated else []), **chosen)
+        """Call that makes the file, for a process that imports nothing of the web."""
+        return partial(self.format.made, export, reader, **chosen)
 
 
 FILES = (
-    File("report.pdf", "Report", "application/pdf", "PDF report", "hpn.files.report.pdf:pdf", "report", "inline"),
+    File("report.pdf", "Report", "application/pdf", "PDF report", formats.PDF, "inline"),
     File(
         "report.xlsx",
         "Workbook",
         "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
         "Workbook of numbers, the handbook’s equations live on one sheet",
-        "hpn.files.workbook.workbook:workbook",
-        "serve",
+        formats.WORKBOOK,
     ),
     File(
         "submodel.aasx",
         "Submodel",
         "application/asset-administration-shell-package",
         "Asset Administration Shell: technical data and selection",
-        "hpn.files.aas.submodel:package",
-        "aas",
+        formats.PACKAGE,
         options=_metamodel,
-        is_translated=False,
     ),
 )
 
@@ -108,7 +106,7 @@ linked_files = APIRouter(include_in_schema=False, dependencies=[admit("calculato
 
 
 def described(file: File) -> dict[int | str, dict[str, Any]]:
-    """The answer with a file, for the document of the API."""
+    """OpenAPI entry of the answer with a file."""
     return {
         200: {
             "description": "The file.",
@@ -139,14 +137,14 @@ def _route(file: File) -> None:
     shared: dict[str, Any] = {
         "response_class": Response,
         "summary": file.summary,
-        "dependencies": [needs(file.extra)],
+        "dependencies": [needs(file.format.extras[0])],
     }
     saved_files.add_api_route(
         f"/{file.name}",
         of_saved,
         operation_id=f"getSelection{file.noun}",
         **shared,
-        description=f"{file.summary} of a saved selection, as it was saved.",
+        description=f"{file.summary}. Made from a saved selection, as it was saved.",
         responses=content | schemas.HAS_IT_ALREADY | schemas.problems(404, 409, 422, 501),
     )
     posted_files.add_api_route(
@@ -154,7 +152,7 @@ def _route(file: File) -> None:
         of_posted,
         operation_id=f"make{file.noun}",
         methods=["POST"],
-        description=f"{file.summary} of an application, computed now; nothing is saved.",
+        description=f"{file.summary}. Made from an application, computed now; nothing is saved.",
         openapi_extra=schemas.request_body(Application),
         responses=content | schemas.problems(400, 408, 413, 415, 422, 501),
         **shared,
@@ -185,11 +183,11 @@ def _schema() -> bytes:
     return msgspec.json.encode(schema | Application.model_json_schema())
 
 
-# --- What goes into a file --------------------------------------------------------------------------------------------
+# --- Content of a file ------------------------------------------------------------------------------------------------
 
 
 def _of_saved(saved: SavedSelection, catalogue: Catalogue | None, request: Request) -> Export:
-    """Export of a saved selection as it was saved; nothing is computed again."""
+    """Export of a saved selection as saved; computes nothing again."""
     try:
         application = Application.model_validate_json(saved.application)
     except ValidationError:
@@ -221,7 +219,7 @@ def _computed(application: Application, request: Request) -> Export:
 
 
 def _linked(query: str, request: Request) -> Export:
-    """Export of a link as the live page shows it, with its labels and its chosen gear."""
+    """Export of a link with its labels and chosen gear, as the live page shows them."""
     link, catalogue = linked(query, "lang", "aas"), request.app.state.catalogue
     export = _computed(link.application, request)
     if link.gear and catalogue.find(link.gear) is None:
@@ -235,22 +233,17 @@ def _linked(query: str, request: Request) -> Export:
 
 
 def _of_gear(export: Export, designation: str) -> Export:
-    """An export about one gear; where the sizes and ratios asked for leave it out, it comes last."""
-    selection, application = export.selection, export.application
-    if selection.candidate(designation) is None:
-        assert export.catalogue is not None
-        left_out = judge(application, export.catalogue).left_out()
-        beyond = [candidate for candidate in left_out if candidate.designation == designation]
-        selection = structs.replace(selection, candidates=(*selection.candidates, *beyond))
-    link = f"{export.link}&gear={designation}"
-    return replace(export, selection=selection, link=link, chosen=designation)
+    """Export with a chosen gear; a gear outside the required sizes and ratios comes last."""
+    assert export.catalogue is not None
+    selection = with_gear(export.selection, export.application, export.catalogue, designation)
+    return replace(export, selection=selection, link=f"{export.link}&gear={designation}", chosen=designation)
 
 
 # --- Making it --------------------------------------------------------------------------------------------------------
 
 
 async def answer_file(request: Request, file: File, lang: str | None, chosen: Options, make: Make) -> Response:
-    """The file, made on workers; 304 for one that the caller has already."""
+    """Response with a file, made beside the service; 304 if the caller has it already."""
     reader = spoken(request, lang)
 
     pool = pool_of(request, "exports")
@@ -270,6 +263,6 @@ async def answer_file(request: Request, file: File, lang: str | None, chosen: Op
 
 
 def spoken(request: Request, lang: str | None) -> Reader:
-    """Reader of a file: the language asked for, else who looks at the page, in their units."""
+    """Reader of a file: the requested language, else the reader's own, and the reader's units."""
     reader: Reader = request.state.reader
     return replace(reader, language=lang or reader.language, digits=DIGITS)

@@ -1,4 +1,4 @@
-"""`POST /api/v1/fleet`: a table of axes in a file, answered by a table in a file of the same format."""
+"""`POST /api/v1/fleet`: a table of axes as a file, answered by a table as a file of the same format."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -33,18 +33,18 @@ MEDIA_TYPES = {
 """Formats of tables by suffix."""
 
 READ_TYPES = {".arrows": "application/vnd.apache.arrow.stream", ".csv.gz": "application/gzip"}
-"""Formats that are read and not written."""
+"""Formats that are only read."""
 
 SUFFIXES = {media_type: suffix for suffix, media_type in (MEDIA_TYPES | READ_TYPES).items()}
 IGNORED = "HPN-Ignored-Columns"
-"""Header with the names of index columns that pandas wrote, each in quotes and percent-encoded."""
+"""Header with the names of pandas' index columns, each in quotes and percent-encoded."""
 
 GONE = {MULTIPART: f"a form with two tables {TWO_GONE}"} | dict.fromkeys(NDJSON, LINES_GONE)
-"""Kinds of bodies that are gone, and what takes their place."""
+"""Content types that are no longer accepted, and texts that name the replacement."""
 
 READ_BYTES = 64 * 1024
 MOST_IGNORED, MOST_NAME = 100, 200
-"""Columns that are left out by their names, and characters of a name."""
+"""Maximum columns that a request can leave out, and characters of a column's name."""
 
 router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("batch"), needs("fleet")])
 
@@ -68,13 +68,13 @@ async def size(
     ] = "answers",
     ignore: Annotated[
         list[Annotated[str, Query(max_length=MOST_NAME)]],
-        Query(description="Columns to leave out, since no application has them.", max_length=MOST_IGNORED),
+        Query(description="Columns to ignore because they are not part of an application.", max_length=MOST_IGNORED),
     ] = [],  # noqa: B006
 ) -> Response:
-    """A row for each axis, in its order; an error in one never affects the others.
+    """Returns one row per axis, in the order of the input; an error in one axis never affects the others.
 
-    A row of the table is an axis or a phase. The answer is a table in the format of the input (Arrow’s file format for
-    a stream, CSV for CSV in gzip), and comes when it is complete. Index columns that pandas wrote are ignored, and
+    A row of the input is an axis or a phase. The answer is a table in the format of the input (Arrow’s file format for
+    an Arrow stream, CSV for gzipped CSV), sent when it is complete. Index columns written by pandas are ignored and
     named in `HPN-Ignored-Columns`.
     """
     state: State = request.app.state
@@ -86,7 +86,7 @@ async def size(
 
 
 class TableFile(StreamingResponse):
-    """A table, read from its file, which may lose its name before it is sent."""
+    """Table read from its file; the file may be removed from its folder before it is sent."""
 
     def __init__(self, path: Path, ignored: Iterable[str]) -> None:
         self._file: BinaryIO = path.open("rb")
@@ -101,16 +101,16 @@ class TableFile(StreamingResponse):
         super().__init__(pieces, headers=headers, media_type=MEDIA_TYPES[path.suffix])
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send it."""
+        """Send the table and close its file."""
         with self._file:
             await super().__call__(scope, receive, send)
 
 
-# --- What arrives -----------------------------------------------------------------------------------------------------
+# --- Receiving the table ----------------------------------------------------------------------------------------------
 
 
 async def _received(request: Request, folder: Path, share: SpoolShare) -> Tables:
-    """The table of a request, in a file; raises Problem as `pass_body` does, 415 for what is no table."""
+    """Table of a request in a file; raises Problem as `pass_body` does, 415 for any other, 400 for a type in GONE."""
     content_type = content_type_of(request)
     if content_type in GONE:
         raise Problem(400, GONE[content_type])
@@ -128,7 +128,7 @@ async def _pass_on(request: Request, share: SpoolShare, write: Callable[[bytes],
 
     async def take(piece: bytes) -> None:
         share.take(len(piece))
-        await pool.run(write, piece)  # a slow disk holds up nobody else
+        await pool.run(write, piece)  # a slow disk delays no other request
 
     await pass_body(
         request,

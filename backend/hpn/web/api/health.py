@@ -22,9 +22,9 @@ class Health(BaseModel):
 
 
 class Readiness(Health):
-    """State of the service and of what it needs."""
+    """State of the service and of its dependencies."""
 
-    engine_version: str = Field(description="Version of the calculation that runs.", examples=["1.1.0"])
+    engine_version: str = Field(description="Version of the running calculation.", examples=["1.1.0"])
     catalogue_version: str = Field(description="Hash of the loaded catalogue’s content.", examples=["53ef277c50b29b46"])
     gears: int = Field(description="Number of gears in the catalogue.", examples=[64])
     store: str = Field(description="ok while selections can be saved.", examples=["ok"])
@@ -57,6 +57,7 @@ async def readyz(request: Request) -> Readiness:
     "/metrics", operation_id="getMetrics", summary="Metrics for Prometheus", response_class=PlainTextResponse
 )
 async def metrics(request: Request) -> Response:
-    """Counters for Prometheus: requests, selections by verdict, operations of the store; versions of what runs."""
+    """Counters for Prometheus: requests, selections by verdict, operations of the store; versions of engine and
+    catalogue."""
     text = await compute(request, "metrics", request.app.state.metrics.exposition)
     return Response(text, media_type=CONTENT_TYPE)

@@ -17,11 +17,9 @@ from hpn.web.archive import Line
 from hpn.web.door.problems import Problem
 from hpn.web.todays import versions_of
 
-Since = Annotated[datetime | None, Field(description="Only those of this moment or later.")]
-
 
 def _reference(reference: str | None) -> str:
-    """A reference to search for. Of an empty variable of a script, every document would come."""
+    """Reference to search for; must not be empty: an empty variable in a script would list every document."""
     if not reference:
         raise PydanticCustomError("empty", "must not be empty; leave it out to list every document")
     return reference
@@ -36,25 +34,27 @@ class ListQuery(BaseModel):
     model_config = ConfigDict(frozen=True)
 
     search: Line | None = Field(
-        None, description="Only those with each of these words in title, reference, author, gear or ordering code."
+        None,
+        description="Only documents with each of these words in title, reference, author, or in name, gear or "
+        "ordering code of an axis.",
     )
-    reference: Reference | None = Field(None, description="Only those with this reference.")
-    author: Line | None = Field(None, description="Only those of this author.")
-    selected: Line | None = Field(None, description="Only those with an axis with this gear.")
-    updated_since: Since = None
-    created_since: Since = None
-    deleted_since: Annotated[datetime | None, Field(description="Ids that were deleted since then, in `deleted`.")] = (
-        None
+    reference: Reference | None = Field(None, description="Only documents with this reference.")
+    author: Line | None = Field(None, description="Only documents of this author.")
+    selected: Line | None = Field(None, description="Only documents that have an axis with this gear.")
+    updated_since: datetime | None = Field(None, description="Only documents changed at this moment or later.")
+    created_since: datetime | None = Field(None, description="Only documents created at this moment or later.")
+    deleted_since: datetime | None = Field(
+        None, description="Adds `deleted`, the ids of documents deleted since this moment, at most a year ago."
     )
     differs: Literal["verdict"] | None = Field(
-        None, description="Only those that get another gear or verdict by today’s engine and catalogue."
+        None, description="Only documents with another gear or verdict by today’s engine and catalogue."
     )
     sort: Sorting = Field(
         "-saved",
-        description="Order, by default the newest first; with a minus the last or the largest comes first.",
+        description="Order, by default the newest first; a leading minus puts the last or the largest first.",
     )
-    cursor: Annotated[str, Field(max_length=2000)] | None = Field(None, description="Cursor from the page before.")
-    limit: int = Field(50, ge=1, le=SELECTIONS_LISTED, description="Largest number on a page.")
+    cursor: Annotated[str, Field(max_length=2000)] | None = Field(None, description="Cursor from the previous page.")
+    limit: int = Field(50, ge=1, le=SELECTIONS_LISTED, description="Largest number of documents on a page.")
 
 
 class KindQuery(ListQuery):
@@ -64,7 +64,7 @@ class KindQuery(ListQuery):
 
 
 class ListPart(NamedTuple):
-    """Part of a list, the cursor to the next one, ids that are gone, and how many documents are still to be asked."""
+    """Part of a list, cursor of the next part, deleted ids, and number of documents without today's verdict."""
 
     lines: list[Any]
     next_cursor: str | None
@@ -78,10 +78,10 @@ async def part_of(
     kind: DocumentKind | None,
     page_of: Callable[[LineFilter, str | None, int], Awaitable[tuple[list[Any], str | None]]],
 ) -> ListPart:
-    """The part of a list that is asked for; Problem 422 for a cursor that isn't one."""
+    """Requested part of a list; Problem 422 for an invalid cursor."""
     store: Store = request.app.state.store
     versions: Versions = versions_of(request.app.state)
-    if pending := await store.pending(versions, kind):  # before the lines: of none that is not pending it is unknown
+    if pending := await store.pending(versions, kind):  # before the lines: lines that are not pending have `today`
         request.app.state.todays.wake()
     try:
         lines, following = await page_of(_wanted(query, kind, versions), query.cursor, query.limit)
@@ -104,7 +104,7 @@ def _wanted(query: ListQuery, kind: DocumentKind | None, versions: Versions) -> 
 
 
 def _moment(time: datetime | None, name: str) -> datetime | None:
-    """A moment of the query, in UTC where it says no zone; Problem 422 for one before the first year."""
+    """Moment of the query in UTC, which is also the default zone; Problem 422 for a moment out of range."""
     if time is None:
         return None
     try:
@@ -115,7 +115,7 @@ def _moment(time: datetime | None, name: str) -> datetime | None:
 
 
 def linked(response: Response, request: Request, address: str, part: ListPart) -> Response:
-    """The response with the address of the next part."""
+    """Response with the address of the next part, if any, as Link."""
     if part.next_cursor:
         pairs = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
         following = urlencode([*pairs, ("cursor", part.next_cursor)])

@@ -1,4 +1,4 @@
-"""Machines as files: report, gear list, axes as tables, one axis, and what differs between two states."""
+"""Files of machines: report, gear list, axes as tables, one axis, and differences between two states."""
 
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -12,23 +12,24 @@ from starlette.responses import Response
 from hpn.catalogue import Catalogue
 from hpn.documents.revision import NOW, TODAY, Frozen, label_key
 from hpn.files.export import Export, ExportTitle
-from hpn.files.machine.changes import DifferencesExport
+from hpn.files.formats import FileFormat
 from hpn.files.machine.export import MachineExport, exports_of, pages_of
 from hpn.store import Machine
 from hpn.web.api import schemas
 from hpn.web.api.axes import Number
 from hpn.web.api.files import FILES, File, Lang, Options, answer_file, described
 from hpn.web.api.machines import ADDRESS
+from hpn.web.archive import no_revision
 from hpn.web.door.access import admit
 from hpn.web.door.problems import Problem, needs
 from hpn.web.door.visit import absolute
-from hpn.web.machines import found, no_axis
-from hpn.web.states import State, catalogues_of, document_of, documents_of, state_of, states_of
+from hpn.web.machines import machine_of, no_axis
+from hpn.web.states import State, differences, document_of, state_of, states_of
 from hpn.words.wording import N_, Sentence
 
 XLSX = next(file.media_type for file in FILES if file.name.endswith(".xlsx"))
 MOST_LIST = 2000
-"""Characters of a list of axes."""
+"""Maximum characters of a list of axes."""
 
 NOT_KEPT = N_("the catalogue of that time is not kept, and without it there are no figures for the file")
 OPEN = N_("axis {number} is open: it has no answer for a file")
@@ -36,9 +37,13 @@ OF_AN_AXIS = ("report.pdf", "submodel.aasx")
 
 Axes = Annotated[
     str | None,
-    Query(max_length=MOST_LIST, description="Axes that get pages: numbers and ranges, or none.", examples=["3,7-20"]),
+    Query(
+        max_length=MOST_LIST,
+        description="Axes with pages of their own: numbers and ranges, or none.",
+        examples=["3,7-20"],
+    ),
 ]
-Full = Annotated[bool, Query(description="The whole calculation of each axis, of 100 axes at most.")]
+Full = Annotated[bool, Query(description="Adds the whole calculation of each axis, for at most 100 axes.")]
 Revision = Annotated[str, Query(max_length=20, description="Label of a revision; now for the working copy.")]
 Before = Annotated[str, Query(alias="from", max_length=20, description="Label of a revision, now or today.")]
 After = Annotated[str, Query(alias="to", max_length=20, description="Label of a revision, now or today.")]
@@ -53,8 +58,7 @@ REPORT = File(
     "MachineReport",
     "application/pdf",
     "PDF report of a machine",
-    "hpn.files.machine.pdf:pdf",
-    "report",
+    FileFormat("hpn.files.machine.pdf:pdf", ("report",)),
     disposition="inline",
     options=_pages,
     stem="machine",
@@ -64,8 +68,7 @@ GEARS = File(
     "GearList",
     XLSX,
     "Gear list of a machine as a workbook",
-    "hpn.files.machine.gears:gears",
-    "serve",
+    FileFormat("hpn.files.machine.gears:gears", ("serve",)),
     stem="gears",
 )
 TABLES = (
@@ -74,9 +77,7 @@ TABLES = (
         "AxesAsCsv",
         "text/csv",
         "Axes of a machine as CSV",
-        "hpn.fleet.machine_axes:csv",
-        "fleet",
-        is_translated=False,
+        FileFormat("hpn.fleet.machine_axes:csv", ("fleet",), is_translated=False),
         stem="axes",
     ),
     File(
@@ -84,9 +85,7 @@ TABLES = (
         "AxesAsParquet",
         "application/vnd.apache.parquet",
         "Axes of a machine as Parquet",
-        "hpn.fleet.machine_axes:parquet",
-        "fleet",
-        is_translated=False,
+        FileFormat("hpn.fleet.machine_axes:parquet", ("fleet",), is_translated=False),
         stem="axes",
     ),
 )
@@ -96,8 +95,7 @@ DIFFERENCES = (
         "DifferencesAsPdf",
         "application/pdf",
         "Differences of two states as PDF",
-        "hpn.files.machine.changes_pdf:pdf",
-        "report",
+        FileFormat("hpn.files.machine.changes_pdf:pdf", ("report",)),
         disposition="inline",
         stem="differences",
     ),
@@ -106,8 +104,7 @@ DIFFERENCES = (
         "DifferencesAsWorkbook",
         XLSX,
         "Differences of two states as a workbook",
-        "hpn.files.machine.changes_workbook:workbook",
-        "serve",
+        FileFormat("hpn.files.machine.changes_workbook:workbook", ("serve",)),
         stem="differences",
     ),
 )
@@ -115,15 +112,16 @@ DIFFERENCES = (
 router = APIRouter(prefix=f"{ADDRESS}/{{id}}", tags=["Files"], dependencies=[admit("reading")])
 
 
-def _add(file: File, route: Callable[..., Any], path: str = "", noun: str = "") -> None:
+def _add(file: File, route: Callable[..., Any], source: str, path: str = "", noun: str = "") -> None:
+    reader = ", in the reader’s language and units" if file.format.is_translated else ""
     router.add_api_route(
         f"{path}/{file.name}",
         route,
         operation_id=f"get{noun or file.noun}",
         response_class=Response,
         summary=file.summary,
-        dependencies=[needs(file.extra)],
-        description=f"{file.summary}, as it is or as it was frozen in a revision; in the reader’s language and units.",
+        dependencies=[needs(file.format.extras[0])],
+        description=f"{file.summary}. Made from {source}{reader}.",
         responses=described(file) | schemas.HAS_IT_ALREADY | schemas.problems(403, 404, 409, 422, 501),
     )
 
@@ -143,7 +141,7 @@ def _route(file: File) -> None:
             return await answer_file(request, file, lang, chosen, lambda: _paged(make(), chosen))
         return await answer_file(request, file, lang, chosen, make)
 
-    _add(file, of_machine)
+    _add(file, of_machine, "the working copy or a revision")
 
 
 def _route_of_axis(file: File) -> None:
@@ -162,18 +160,20 @@ def _route_of_axis(file: File) -> None:
             request, file, lang, chosen, lambda: _axis(_made(request, machine, state, None), number)
         )
 
-    _add(file, of_axis, "/axes/{number}", f"Axis{file.noun}")
+    _add(file, of_axis, "an axis of the working copy or of a revision", "/axes/{number}", f"Axis{file.noun}")
 
 
 def _route_of_differences(file: File) -> None:
     async def of_differences(
         request: Request, id: schemas.Id, before: Before, after: After, lang: Lang = None
     ) -> Response:
-        machine = await found(request, id)
+        machine = await machine_of(request, id)
         states = await states_of(request, machine, before, after)
-        return await answer_file(request, file, lang, {}, lambda: _compared(request, machine, (before, after), states))
+        return await answer_file(
+            request, file, lang, {}, lambda: differences(request, machine, (before, after), states)
+        )
 
-    _add(file, of_differences)
+    _add(file, of_differences, "two states, each a revision, the working copy or today’s answer")
 
 
 for _file in (REPORT, GEARS, *TABLES):
@@ -185,13 +185,13 @@ for _file in DIFFERENCES:
     _route_of_differences(_file)
 
 
-# --- What goes into a file --------------------------------------------------------------------------------------------
+# --- Content of a file ------------------------------------------------------------------------------------------------
 
 
 async def _state(request: Request, id: str, revision: str) -> tuple[Machine, State]:
+    machine = await machine_of(request, id)
     if label_key(revision) == TODAY:
-        raise Problem(404, f"there is no revision {revision[:20]!r}")
-    machine = await found(request, id)
+        raise no_revision(f"/{machine.kind}s/{id}", revision, await request.app.state.store.revisions(id))
     return machine, await state_of(request, machine, revision)
 
 
@@ -221,7 +221,7 @@ def _made(request: Request, machine: Machine, state: State, before: tuple[str, b
 
 def _document(state: State) -> Frozen:
     document = document_of(state.content)
-    assert document is not None  # today is no state of a file
+    assert document is not None  # files of `today` are refused before
     return document
 
 
@@ -232,7 +232,7 @@ def _catalogue(state: State) -> Catalogue:
 
 
 def _paged(export: MachineExport, chosen: Options) -> MachineExport:
-    """The export where its pages may be made; raises InputError as `pages_of`."""
+    """Export, after a check that its pages can be made; raises InputError as `pages_of` does."""
     pages_of(export.document, **chosen)
     return export
 
@@ -245,12 +245,3 @@ def _axis(export: MachineExport, number: int) -> Export:
     if selection is None:
         raise Problem(409, Sentence(OPEN, {"number": str(number)}))
     return selection
-
-
-def _compared(
-    request: Request, machine: Machine, labels: tuple[str, str], states: tuple[State, State]
-) -> DifferencesExport:
-    one, other = documents_of(*states)
-    link = absolute(request, f"/machines/{machine.id}/revisions?from={labels[0]}&to={labels[1]}")
-    heading = ExportTitle(machine.title or "", machine.reference or "", machine.author or "")
-    return DifferencesExport(labels, (one, other), catalogues_of(*states), link, heading, made=datetime.now(UTC))

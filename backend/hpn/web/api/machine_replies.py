@@ -1,4 +1,4 @@
-"""Replies on machines, typed, and how they are made of what the store gives back."""
+"""Typed replies on machines, and their construction from records of the store."""
 
 from collections.abc import Callable, Collection, Mapping
 from datetime import datetime
@@ -20,30 +20,28 @@ from hpn.words.reply import Reply
 
 L = TypeVar("L", bound="LineReply")
 
-OwnPart = Annotated[dict[str, Any], Field(description="Its own part of its application, as it was sent.")]
-Whole = Annotated[
-    dict[str, Any], Field(description="Its application: own values and the common ones that hold for it.")
-]
+OwnPart = Annotated[dict[str, Any], Field(description="The axis’s own part of its application, as sent.")]
+Whole = Annotated[dict[str, Any], Field(description="The whole application: own values and inherited common values.")]
 
 
 class AnswerReply(AxisAnswer, frozen=True):
-    """Answer of an axis, and the problem of one that is open."""
+    """Answer of an axis, with the problem of an open axis."""
 
-    problem: Annotated[ProblemReply | None, Field(description="Why an open axis has no answer.")] = None
+    problem: Annotated[ProblemReply | None, Field(description="Reason why an open axis has no answer.")] = None
 
 
-Answer = Annotated[AnswerReply, Field(description="Its gear, and how that does.")]
+Answer = Annotated[AnswerReply, Field(description="Gear of the axis, with its verdict and figures.")]
 
 
 class AxisReply(Reply, frozen=True):
     """One axis of a document."""
 
-    number: Annotated[int, Field(description="Number, which no other axis of this document ever has.")]
+    number: Annotated[int, Field(description="Number of the axis; no other axis of this document ever gets it.")]
     name: Annotated[str | None, Field(description="Name.")]
-    quantity: Annotated[int, Field(description="Number of such axes.")]
+    quantity: Annotated[int, Field(description="Number of equal axes.")]
     note: Annotated[str | None, Field(description="Note.")]
     ordering_code: Annotated[str | None, Field(description="Ordering code.")]
-    without: Annotated[tuple[str, ...], Field(description="Paths of common values that do not hold for it.")]
+    without: Annotated[tuple[str, ...], Field(description="Paths of common values that the axis does not inherit.")]
     application: OwnPart
     resolved: Whole
     answer: Answer
@@ -52,7 +50,7 @@ class AxisReply(Reply, frozen=True):
 
 
 class CountsReply(Reply, frozen=True):
-    """Numbers of axes; those that are neither have a gear that is not rated."""
+    """Numbers of axes; an axis in none of the three groups has a gear that is not rated."""
 
     axes: Annotated[int, Field(description="All axes.")]
     suitable: Annotated[int, Field(description="Axes with a suitable gear.")]
@@ -73,10 +71,11 @@ class LineReply(Reply, frozen=True):
     revision: Annotated[str | None, Field(description="Latest revision.")]
     created: Moment
     updated: Moment
-    saved: Annotated[str | None, Field(description="When it was saved; null while nobody has.")]
+    saved: Annotated[str | None, Field(description="Moment of saving; null before the first saving.")]
     counts: Annotated[CountsReply, Field(description="Numbers of axes.")]
     utilisation: Annotated[
-        float | None, Field(description="Largest utilisation of a suitable gear; of a selection that of its gear.")
+        float | None,
+        Field(description="Largest utilisation of a suitable gear; for a selection, the utilisation of its gear."),
     ]
 
 
@@ -84,48 +83,50 @@ class MachineReply(LineReply, frozen=True):
     """A document with its working copy."""
 
     common: Annotated[dict[str, Any], Field(description="Common values.")]
-    order: Annotated[tuple[int, ...], Field(description="Numbers of its axes in their order.")]
+    order: Annotated[tuple[int, ...], Field(description="Numbers of the axes in their order.")]
     axes: Annotated[tuple[AxisReply, ...], Field(max_length=MOST_AXES, description="Axes in their order.")]
 
 
 class MachineToday(Reply, frozen=True):
     """Verdict on a document by today's engine and catalogue."""
 
-    verdict_changed: Annotated[int, Field(description="Number of axes with another gear or verdict.")]
-    axes: Annotated[list[int], Field(max_length=100, description="Numbers of the first 100 of them.")]
+    verdict_changed: Annotated[int, Field(description="Number of axes whose gear or verdict differs.")]
+    axes: Annotated[list[int], Field(max_length=100, description="Numbers of the first 100 of these axes.")]
 
 
 class ListedReply(LineReply, frozen=True):
-    """One line of the list, with what it gets today."""
+    """One line of the list, with today's verdict."""
 
-    today: Annotated[MachineToday | None, Field(description="By today’s engine and catalogue; null until it is known.")]
+    today: Annotated[
+        MachineToday | None, Field(description="Verdict by today’s engine and catalogue; null until it is computed.")
+    ]
 
 
 class MachineListReply(Reply, frozen=True):
     """Part of the list of documents."""
 
     machines: Annotated[
-        list[ListedReply], Field(max_length=SELECTIONS_LISTED, description="Documents, in the order asked for.")
+        list[ListedReply], Field(max_length=SELECTIONS_LISTED, description="Documents, in the requested order.")
     ]
-    next_cursor: Annotated[str | None, Field(description="Asks for the next part; null at the end.")]
-    deleted: Annotated[list[str], Field(description="Ids that were deleted since then, where that is asked.")]
-    pending: Annotated[int, Field(description="Number of documents of this kind whose `today` is not known yet.")]
+    next_cursor: Annotated[str | None, Field(description="Cursor of the next part; null at the end.")]
+    deleted: Annotated[list[str], Field(description="Ids deleted since `deleted_since`; empty without it.")]
+    pending: Annotated[int, Field(description="Number of documents of this kind whose `today` is not computed yet.")]
 
 
 class NumbersReply(Reply, frozen=True):
-    """Axes that are new or back."""
+    """New and restored axes."""
 
-    numbers: Annotated[tuple[int, ...], Field(description="Their numbers, in the order in which they were sent.")]
+    numbers: Annotated[tuple[int, ...], Field(description="Numbers of the axes, in the order of the request.")]
 
 
 class EffectReply(Reply, frozen=True):
     """Effect of a change of several axes."""
 
-    axes: Annotated[int, Field(description="Axes that it is about.")]
+    axes: Annotated[int, Field(description="Number of axes in the change.")]
     other_gear: Annotated[tuple[int, ...], Field(description="Numbers of the axes with another gear.")]
-    without_gear: Annotated[tuple[int, ...], Field(description="Numbers of the axes that have none after it.")]
-    weight_before_kg: Annotated[float | None, Field(description="Mass of all gears of the machine before.")]
-    weight_kg: Annotated[float | None, Field(description="Mass of all gears of the machine after it.")]
+    without_gear: Annotated[tuple[int, ...], Field(description="Numbers of the axes without a gear after the change.")]
+    weight_before_kg: Annotated[float | None, Field(description="Mass of all gears of the machine before the change.")]
+    weight_kg: Annotated[float | None, Field(description="Mass of all gears of the machine after the change.")]
 
 
 class RevisionsReply(Reply, frozen=True):
@@ -139,17 +140,17 @@ class FrozenAxisReply(Reply, frozen=True):
 
     number: Annotated[int, Field(description="Number.")]
     name: Annotated[str | None, Field(description="Name.")]
-    quantity: Annotated[int, Field(description="Number of such axes.")]
+    quantity: Annotated[int, Field(description="Number of equal axes.")]
     note: Annotated[str | None, Field(description="Note.")]
     ordering_code: Annotated[str | None, Field(description="Ordering code.")]
-    without: Annotated[tuple[str, ...], Field(description="Paths of common values that do not hold for it.")]
+    without: Annotated[tuple[str, ...], Field(description="Paths of common values that the axis does not inherit.")]
     application: OwnPart
     resolved: Whole
     answer: Answer
 
 
 class FrozenReply(Reply, frozen=True):
-    """A revision, whole."""
+    """A whole revision."""
 
     revision: Annotated[RevisionReply, Field(description="Its line in the list.")]
     title: Annotated[str | None, Field(description="Title.")]
@@ -160,16 +161,16 @@ class FrozenReply(Reply, frozen=True):
     axes: Annotated[tuple[FrozenAxisReply, ...], Field(max_length=MOST_AXES, description="Axes in their order.")]
 
 
-# --- Made of what the store gives -------------------------------------------------------------------------------------
+# --- From records of the store ----------------------------------------------------------------------------------------
 
 
 def moment(time: datetime) -> str:
-    """A moment as it is sent."""
+    """Text of a moment in a reply."""
     return time.isoformat(timespec="microseconds").replace("+00:00", "Z")
 
 
 def line(record: DocumentLine, kind: type[L] = LineReply, **more: Any) -> L:  # type: ignore[assignment]
-    """A line of the list."""
+    """Line of the list."""
     same = ("id", "kind", "title", "reference", "author", "note", "revision")
     return kind(
         **{name: getattr(record, name) for name in same},
@@ -184,7 +185,7 @@ def line(record: DocumentLine, kind: type[L] = LineReply, **more: Any) -> L:  # 
 
 
 def listed(record: DocumentLine, key: str) -> ListedReply:
-    """A line of the list, with what it gets by the versions of a key, if that is known."""
+    """Line of the list, with its verdict by the versions of a key, if that is known."""
     today = None
     if record.today_of == key and record.today_changed is not None:
         today = MachineToday(record.today_changed, msgspec.json.decode(record.today_axes or "[]"))
@@ -192,14 +193,14 @@ def listed(record: DocumentLine, key: str) -> ListedReply:
 
 
 def machine(saved: Machine) -> LineReply:
-    """A document with its axes."""
+    """Document with its axes."""
     common = common_of(saved)
     axes = tuple(axis(each, common) for each in saved.items)
     return line(saved, MachineReply, common=common, order=saved.order, axes=axes)
 
 
 def parts(saved: Machine, names: Collection[str], of_axes: Collection[str]) -> dict[str, Any]:
-    """Some fields of a document, and of its axes."""
+    """Selected fields of a document and of its axes."""
     common = common_of(saved)
     values = structs.asdict(line(saved)) | {"common": common, "order": saved.order}
     chosen: dict[str, Any] = {name: value for name, value in values.items() if name in names}
@@ -221,11 +222,11 @@ PARTS: Mapping[str, Callable[[SavedAxis, Mapping[str, Any]], Any]] = {
     "updated": lambda each, _: moment(each.updated),
     "updated_by": _same("updated_by"),
 }
-"""Fields of an axis, each as it is made."""
+"""Functions that make the fields of an axis."""
 
 
 def axis(saved: SavedAxis, common: Mapping[str, Any]) -> AxisReply:
-    """An axis with its application and its answer."""
+    """Axis with its application and its answer."""
     return AxisReply(**{name: part(saved, common) for name, part in PARTS.items()})
 
 
@@ -234,7 +235,7 @@ def _raw(content: bytes) -> Any:
 
 
 def answer(kept_answer: AxisAnswer) -> AnswerReply:
-    """An answer, with its problem."""
+    """Answer with its problem."""
     problem = None if kept_answer.status != "open" else problem_of(kept_answer.faults)
     return AnswerReply(**{name: getattr(kept_answer, name) for name in kept_answer.__struct_fields__}, problem=problem)
 
@@ -246,14 +247,14 @@ def problem_of(faults: tuple[AxisFault, ...]) -> ProblemReply:
 
 
 def revision(record: RevisionLine) -> RevisionReply:
-    """A line of the list of revisions."""
+    """Line of the list of revisions."""
     same = [name for name in RevisionReply.__struct_fields__ if name not in ("created", "axis_count")]
     values = {name: getattr(record, name) for name in same}
     return RevisionReply(**values, created=moment(record.created), axis_count=record.axes)
 
 
 def frozen(record: RevisionLine, content: Frozen) -> FrozenReply:
-    """A revision as it was frozen."""
+    """Revision with its frozen content."""
     block = {name: getattr(content, name) for name in ("title", "reference", "author", "note", "common")}
     return FrozenReply(revision=revision(record), axes=tuple(map(_frozen_axis, content.axes)), **block)
 

@@ -1,4 +1,4 @@
-"""Machines out of tables over REST: read as the page /machines reads them, and questions listed in place of asked."""
+"""Machines from tables over REST: read as on the page /machines, with open questions as errors instead of a form."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -23,14 +23,14 @@ from hpn.words.wording import N_, Sentence
 
 WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 TABLES = (*MEDIA_TYPES.values(), *READ_TYPES.values(), WORKBOOK)
-"""Kinds of tables; which one it is, its content says."""
+"""Content types of tables; the content itself determines the format."""
 
 ANSWER = ("answer",)
 OPTIONS = N_("{question} Answer with answer={name}: and one of {options}.")
 
 
 async def draft_of_table(request: Request, body: bytes, texts: Sequence[str]) -> MachineDraft:
-    """Machine of a table, by answers to its questions; Problem 422 for open ones, 501 without the extra."""
+    """Draft of a table's machine by answers to its questions; Problem 422 for open ones, 501 without the extra."""
     try:
         require("fleet")
     except ExtraMissingError as error:
@@ -52,7 +52,7 @@ def _reading(body: bytes, texts: Sequence[str]) -> Callable[[], Any]:
 
 
 def sizing_of(reading: MachineReading, catalogue: Catalogue) -> Callable[[], Any]:
-    """The call that sizes the axes of a reading; Problem 422 where it can't be taken as it is."""
+    """Call that sizes the axes of a reading; Problem 422 for an incomplete, unreadable or too large table."""
     from hpn.web.axis_tables import drafts_in
 
     if reading.refusal:
@@ -69,7 +69,7 @@ def sizing_of(reading: MachineReading, catalogue: Catalogue) -> Callable[[], Any
 
 
 def require_whole(table: Table) -> None:
-    """Raise Problem 422 for a table that can't be read, or leaves questions open, with all of them."""
+    """Raise Problem 422 for a table that can't be read, or with all questions that are open."""
     if table.problem:
         raise Problem(422, table.problem)
     questions = [_with_options(question, table.choices) for question in table.questions]
@@ -78,7 +78,7 @@ def require_whole(table: Table) -> None:
 
 
 def _with_options(question: Sentence, choices: Sequence[Choice]) -> Sentence:
-    """A question with the answers that it takes, where it has a name."""
+    """Question with the answers that it accepts; unchanged if it is not about a choice."""
     choice = next((each for each in choices if each.question == question and not each.chosen), None)
     if choice is None:
         return question

@@ -36,9 +36,9 @@ from hpn.web.machines import (
     answered,
     apply,
     editable,
-    found,
     gone,
     guarded,
+    machine_of,
     once_of,
     patched,
     require_document,
@@ -49,10 +49,11 @@ from hpn.web.todays import versions_of
 REPLAYED = "Idempotency-Replayed"
 ADDRESS = "/api/v1/machines"
 MOST_ANSWERS, MOST_ANSWER = 90, 300
-"""Answers to the questions about a table, and characters of one."""
+"""Maximum answers to the questions about a table, and characters of an answer."""
 
 TEXTS = 12
-"""Names and lists of the JSON of a machine beyond those of its phases: what `GET` gives has each value three times."""
+"""Allowance for JSON of a machine beyond that of its phases, per axis; a reply of `GET` repeats each value three
+times."""
 
 KINDS: Mapping[str, DocumentKind | None] = {"machine": "machine", "selection": "selection", "all": None}
 
@@ -60,7 +61,7 @@ router = APIRouter(prefix=ADDRESS, tags=["Machines"])
 
 
 def require_machine(text: bytes) -> None:
-    """Raise Problem 422 for JSON with more in it than any machine has, before it is parsed."""
+    """Raise Problem 422 for JSON with more objects, names or lists than any machine has, before it is parsed."""
     objects, names = 3 * MOST_PHASES + TEXTS * MOST_AXES, 30 * MOST_PHASES + 10 * TEXTS * MOST_AXES
     if text.count(b"{") > objects or text.count(b":") > names or text.count(b"[") > objects:
         detail = f"has more in it than a machine with {MOST_AXES} axes and {MOST_PHASES} phases"
@@ -68,11 +69,11 @@ def require_machine(text: bytes) -> None:
 
 
 class MachinePatch(TitleBlock):
-    """Changes of a machine: a merge patch of title block and common values, and another order of its axes."""
+    """Changes of a machine: a merge patch of title block and common values, and a new order of its axes."""
 
-    common: dict[str, Any] | None = Field(None, description="Merge patch of the common values; null removes one.")
+    common: dict[str, Any] | None = Field(None, description="Merge patch of the common values; null removes a value.")
     order: Annotated[tuple[int, ...], Field(max_length=MOST_AXES)] | None = Field(
-        None, description="Numbers of all its axes in another order."
+        None, description="Numbers of all axes in their new order."
     )
 
 
@@ -97,51 +98,50 @@ async def save_machine(
     answer: Annotated[
         list[Annotated[str, Query(max_length=MOST_ANSWER)]],
         Query(
-            description="Of a table: a column, by heading or number, and what it is: an input by symbol or name, a "
-            "unit, or skip, such as `Moment:T`, `3:Nm`, `Remark:skip`; or a question and its answer, such as "
-            "`decimal:,`.",
+            description="Answer to a question about a table, as `column:meaning`: the heading or number of the "
+            "column, then the symbol or name of an input, a unit, or skip, such as `Moment:T`, `3:Nm`, `Remark:skip`. "
+            "Or `question:answer`, such as `decimal:,`.",
             max_length=MOST_ANSWERS,
         ),
     ] = [],  # noqa: B006
 ) -> Response:
-    """Saves a machine with its axes, each with its answer; once answered with 201 it is durable.
+    """Saves a machine with its axes and the answer of each axis; the machine is durable once the reply is 201.
 
-    A table of axes is read as on the page /machines: what has two readings is never guessed, but listed as the errors
-    of a 422, to be answered by repeated `answer`.
+    A table of axes is read as on the page /machines: nothing ambiguous is guessed. Each open question is an error of a
+    422; repeat the request with one `answer` for each.
     """
     once = once_of(request, body := await read_body(request, JSON, *TABLES, maximum_bytes=MOST_BYTES))
     if content_type_of(request) == JSON:
-        draft = await compute(request, "batches", _draft, body, request.app.state.catalogue, request.state.api_key)
+        key, catalogue = request.state.api_key, request.app.state.catalogue
+        draft = await compute(
+            request, "batches", lambda: draft_of(parsed(Document, body, require_machine), catalogue, key)
+        )
     else:
         draft = await draft_of_table(request, body, answer)
     id: str = await guarded(request.app.state.store.add_machine(draft, once))
     note(request, machine=id)
-    headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await found(request, id, []))}
+    headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await machine_of(request, id, []))}
     if id != draft.id:
         headers[REPLAYED] = "true"
     return JSONBytes(encode(SavedReply(id, f"/machines/{id}")), 201, headers)
 
 
-def _draft(body: bytes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
-    return draft_of(parsed(Document, body, require_machine), catalogue, owner)
-
-
 def draft_of(
-    sent: Document,
+    document: Document,
     catalogue: Catalogue,
     owner: str | None,
     revisions: Sequence[tuple[datetime, RevisionDraft]] = (),
 ) -> MachineDraft:
-    """A machine to be kept, with its answers, and revisions that it has had elsewhere."""
-    common = sent.common.sent
+    """Draft of a machine with its answers, and with revisions from elsewhere."""
+    common = document.common.sent
     return MachineDraft(
-        axes=drafts_of(sent.axes, common, catalogue),
+        axes=drafts_of(document.axes, common, catalogue),
         engine_version=ENGINE_VERSION,
         catalogue_version=catalogue.version,
-        title=sent.title,
-        reference=sent.reference,
-        author=sent.author,
-        note=sent.note,
+        title=document.title,
+        reference=document.reference,
+        author=document.author,
+        note=document.note,
         common=msgspec.json.encode(common).decode(),
         owner=owner,
         revisions=revisions,
@@ -150,7 +150,10 @@ def draft_of(
 
 Fields = Annotated[
     str | None,
-    Query(max_length=1000, description="Names of the fields wanted, with commas; those of an axis as `axes.name`."),
+    Query(
+        max_length=1000,
+        description="Names of the fields to return, separated by commas; fields of an axis as `axes.name`.",
+    ),
 ]
 
 
@@ -163,10 +166,10 @@ Fields = Annotated[
     responses=schemas.answers(422, headers=schemas.headers("Link")),
 )
 async def list_machines(request: Request, query: Annotated[KindQuery, Query()]) -> Response:
-    """Saved machines, newest first; the Link header gives the next page. `deleted` has the ids that are gone.
+    """Saved machines, newest first; the Link header gives the next page. `deleted` lists the ids of deleted documents.
 
-    `today` says how many axes get another gear or verdict by today's engine and catalogue, and which; that is made in
-    the background, and `pending` says of how many documents it is not known yet.
+    `today` counts and lists the axes with another gear or verdict by today's engine and catalogue. It is computed in
+    the background; `pending` is the number of documents that still lack it.
     """
     store: Store = request.app.state.store
 
@@ -193,29 +196,29 @@ async def read_machine(
     id: schemas.Id,
     fields: Fields = None,
 ) -> Response:
-    """The machine with its working copy. Its ETag stands for title block, common values, order and set of axes."""
+    """The machine with its working copy. Its ETag covers title block, common values, order and set of axes."""
     return await _reply(request, id, await _wanted(request, id, fields))
 
 
 async def _reply(request: Request, id: str, wanted: FieldNames | None) -> Response:
     """A machine, or some fields of it; where these are none of its axes, no axis is read."""
-    machine = await found(request, id, None if wanted is None or wanted.of_each else [])
-    body = await compute(request, "pages", _whole, machine, wanted)
+    machine = await machine_of(request, id, None if wanted is None or wanted.of_each else [])
+    body = await compute(
+        request,
+        "pages",
+        lambda: encode(replies.machine(machine) if wanted is None else replies.parts(machine, *wanted)),
+    )
     return JSONBytes(body, headers={"ETag": tag_of(machine), "Cache-Control": "no-cache"})
 
 
-def _whole(machine: Machine, wanted: FieldNames | None) -> bytes:
-    return encode(replies.machine(machine) if wanted is None else replies.parts(machine, *wanted))
-
-
 async def _wanted(request: Request, id: str, fields: str | None) -> FieldNames | None:
-    """Fields of a machine by their names; Problem 404 where there is none, 422 for a name that it hasn't."""
+    """Requested fields of a machine, None for all; Problem 404 for an unknown machine, 422 for an unknown name."""
     if fields is None:
         return None
     try:
         return field_names(fields, "a machine", replies.MachineReply.__struct_fields__, "axes", replies.PARTS)
     except Problem:
-        await found(request, id, [])
+        await machine_of(request, id, [])
         raise
 
 
@@ -230,10 +233,10 @@ async def _wanted(request: Request, id: str, fields: str | None) -> FieldNames |
     responses=schemas.answers(*(400, 403, 404, 408, 412, 413, 415, 422), headers=schemas.headers("ETag")),
 )
 async def change_machine(request: Request, id: schemas.Id, fields: Fields = None) -> Response:
-    """Merge patch (RFC 7396) of title block and common values; `order` has the numbers of all axes.
+    """Merge patch (RFC 7396) of title block and common values; `order` lists the numbers of all axes.
 
-    Every axis is answered anew where common values change; one that can't be answered any more is open, and never
-    keeps the change from being made. The answer is the machine, or the fields that are asked for.
+    If common values change, every axis is calculated again; an axis that can no longer be calculated becomes open and
+    does not block the change. The reply is the machine, or the requested fields.
     """
     wanted = await _wanted(request, id, fields)
     body = await read_body(request, JSON, MERGE_PATCH, maximum_bytes=MOST_BYTES)
@@ -251,17 +254,17 @@ async def change_machine(request: Request, id: schemas.Id, fields: Fields = None
 
 
 def _change(machine: Machine, patch: MachinePatch, catalogue: Catalogue, by: str | None) -> Change:
-    sent = patch.model_fields_set
-    values: dict[str, Any] = {n: getattr(patch, n) for n in ("title", "reference", "author", "note") if n in sent}
-    made = Change(machine.version, by, values, _order(machine, patch.order) if patch.order is not None else None)
-    if "common" not in sent:
-        return made
+    fields = patch.model_fields_set
+    values: dict[str, Any] = {n: getattr(patch, n) for n in ("title", "reference", "author", "note") if n in fields}
+    change = Change(machine.version, by, values, _order(machine, patch.order) if patch.order is not None else None)
+    if "common" not in fields:
+        return change
     try:
         common = Common.model_validate(patched(common_of(machine), patch.common) or {}).sent
     except (ValidationError, InputError) as error:
         raise _below_common(error) from None
     values["common"] = msgspec.json.encode(common).decode()
-    return replace(made, answered=answered(machine, common, catalogue))
+    return replace(change, answered=answered(machine, common, catalogue))
 
 
 def _below_common(error: ValidationError | InputError) -> Problem:
@@ -287,7 +290,7 @@ def _order(machine: Machine, order: tuple[int, ...]) -> list[int]:
     openapi_extra={"parameters": [schemas.header("If-Match", "Tag of the version to delete.")]},
 )
 async def delete_machine(request: Request, id: schemas.Id) -> Response:
-    """Deletes a machine with its revisions permanently. A retry of saving it is then answered with 410."""
+    """Deletes a machine and its revisions permanently. A retry of saving it is then answered with 410."""
     machine = await editable(request, id, [])
     require_document(request, machine)
     version = None if request.headers.get("if-match", "*").strip() == "*" else machine.version

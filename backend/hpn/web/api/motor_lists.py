@@ -1,7 +1,6 @@
-"""Lists of motors over REST: keep one under a name, list, read, replace, delete; `server` is motors.csv."""
+"""Lists of motors over REST: save under a name, list, read, replace, delete; `server` is motors.csv."""
 
 from collections.abc import Sequence
-from datetime import datetime
 from functools import partial
 from typing import Annotated
 
@@ -15,12 +14,13 @@ from starlette.responses import Response
 from hpn.application.faults import Fault
 from hpn.engine.motors import entries_of
 from hpn.store import MotorListDraft, MotorListLine
-from hpn.tables.motors import NO_FIGURE, NO_NAME
+from hpn.tables.motors import NO_FIGURE, NO_FIGURES, NO_NAME
 from hpn.tables.reading import Reading
 from hpn.tables.table import Table
 from hpn.web import motor_lists
 from hpn.web.api import schemas
 from hpn.web.api.fleet import MEDIA_TYPES
+from hpn.web.api.machine_replies import moment
 from hpn.web.api.machine_tables import ANSWER, WORKBOOK, require_whole
 from hpn.web.api.machines import MOST_ANSWER, MOST_ANSWERS
 from hpn.web.api.replies import JSONBytes, Moment, encode
@@ -39,10 +39,10 @@ ADDRESS = "/api/v1/motor-lists"
 TABLES = (MEDIA_TYPES[".csv"], WORKBOOK)
 NO_TABLE = N_("the content is no table of motors: send CSV or XLSX")
 
-IF_MATCH = {"parameters": [schemas.header("If-Match", "Tag of the state that is to change.")]}
+IF_MATCH = {"parameters": [schemas.header("If-Match", "Tag of the state to change.")]}
 
 router = APIRouter(prefix=ADDRESS, tags=["Motors"])
-"""Its routes are of different groups, which each declares."""
+"""Router without a common group: each route declares its own."""
 
 
 class MotorListSummary(Reply, frozen=True):
@@ -51,18 +51,26 @@ class MotorListSummary(Reply, frozen=True):
     id: Annotated[str, Field(description="Id of the list; `server` for motors.csv, which is read-only.")]
     name: Annotated[str, Field(description="Name.")]
     motors: Annotated[int, Field(description="Number of its motors.")]
-    created: Annotated[Moment | None, Field(description="When it was kept first; null for `server`.")]
-    updated: Annotated[Moment | None, Field(description="When it was changed last; null for `server`.")]
+    created: Annotated[Moment | None, Field(description="Moment of creation; null for `server`.")]
+    updated: Annotated[Moment | None, Field(description="Moment of the last change; null for `server`.")]
 
 
 class MotorListsReply(Reply, frozen=True):
-    """All lists of motors by their names, `server` first where there is one."""
+    """All lists of motors in the order of their names; `server` first, if the service has it."""
 
     lists: Annotated[list[MotorListSummary], Field(description="The lists.")]
 
 
+class PointReply(Reply, frozen=True):
+    """A point of a motor's torque over speed."""
+
+    speed_rpm: Annotated[float, Field(description="Motor speed.")]
+    continuous_Nm: Annotated[float, Field(description="Continuous torque at this speed.")]
+    peak_Nm: Annotated[float, Field(description="Peak torque at this speed.")]
+
+
 class EntryReply(Reply, frozen=True):
-    """A motor of a list; null is a figure that is not known."""
+    """A motor of a list; an unknown figure is null."""
 
     designation: Annotated[str, Field(description="Name of the motor.")]
     maximum_speed_rpm: Annotated[float | None, Field(description="Maximum motor speed.")] = None
@@ -72,6 +80,7 @@ class EntryReply(Reply, frozen=True):
     peak_torque_Nm: Annotated[float | None, Field(description="Peak motor torque.")] = None
     inertia_kgm2: Annotated[float | None, Field(description="Moment of inertia of the motor’s rotor.")] = None
     weight_kg: Annotated[float | None, Field(description="Weight of the motor.")] = None
+    curve: Annotated[list[PointReply] | None, Field(description="Torque over speed, by rising speed from 0.")] = None
 
 
 class MotorListReply(Reply, frozen=True):
@@ -79,14 +88,14 @@ class MotorListReply(Reply, frozen=True):
 
     id: Annotated[str, Field(description="Id of the list.")]
     name: Annotated[str, Field(description="Name.")]
-    motors: Annotated[list[EntryReply], Field(description="Its motors, in its order.")]
+    motors: Annotated[list[EntryReply], Field(description="Motors in the order of the list.")]
 
 
 @router.post(
     "",
     dependencies=[admit("writing")],
     operation_id="saveMotorList",
-    summary="Keep a list of motors",
+    summary="Save a list of motors",
     status_code=201,
     openapi_extra=schemas.with_tables(schemas.request_body(MotorList), TABLES, schemas.OF_MOTORS),
     response_model=MotorListSummary,
@@ -94,21 +103,22 @@ class MotorListReply(Reply, frozen=True):
 )
 async def save_list(
     request: Request,
-    name: Annotated[str | None, Query(description="Of a table: the name of the list.", max_length=200)] = None,
+    name: Annotated[str | None, Query(description="Name of the list; only for a table.", max_length=200)] = None,
     answer: Annotated[
         list[Annotated[str, Query(max_length=MOST_ANSWER)]],
         Query(
-            description="Of a table: a column, by heading or number, and what it is: a figure by its name, a unit, or "
-            "skip, such as `M0:stall_torque_Nm`, `3:Nm`, `k_T:skip`; or a question and its answer, such as "
-            "`zeros:unknown`.",
+            description="Answer to a question about a table, as `column:meaning`: the heading or number of the "
+            "column, then the name of a figure, a unit, or skip, such as `M0:stall_torque_Nm`, `3:Nm`, `k_T:skip`. Or "
+            "`question:answer`, such as `zeros:unknown`.",
             max_length=MOST_ANSWERS,
         ),
     ] = [],  # noqa: B006
 ) -> Response:
-    """Keeps up to 5000 motors under a name, which a key or whoever has none gives one list alone; up to 200 lists.
+    """Stores up to 5000 motors under a name. Each API key has up to 200 lists with unique names; callers without a key
+    share theirs.
 
-    A table of motors is read as on the page /motor-lists: what it leaves open is never guessed, but listed as the
-    errors of a 422, to be answered by repeated `answer`.
+    A table of motors is read as on the page /motor-lists: nothing ambiguous is guessed. Each open question is an error
+    of a 422; repeat the request with one `answer` for each.
     """
     body = await read_body(request, JSON, *TABLES)
     if content_type_of(request) == JSON:
@@ -116,7 +126,7 @@ async def save_list(
     else:
         reading, faults = await compute_beside(request, "files", partial(read_answered, body, answer))
         draft = await compute(request, "pages", _draft_of_table, reading, faults, name)
-    saved = await motor_lists.kept(request, draft)
+    saved = await motor_lists.keep(request, draft)
     return JSONBytes(encode(_line(saved)), 201, {"Location": f"{ADDRESS}/{saved.id}", "ETag": tag_of(saved)})
 
 
@@ -130,7 +140,7 @@ async def save_list(
     responses=schemas.tagged(422),
 )
 async def list_lists(request: Request) -> Response:
-    """All lists by their names, without their motors; `server` first where the service has a motors.csv."""
+    """All lists in the order of their names, without their motors; `server` first, if the service has a motors.csv."""
     state: State = request.app.state
     own = state.catalogue.motors
     server = [MotorListSummary(SERVER, SERVER, len(own), None, None)] if own else []
@@ -148,11 +158,11 @@ async def list_lists(request: Request) -> Response:
     responses=schemas.tagged(404, 422),
 )
 async def read_motor_list(request: Request, id: schemas.ListId) -> Response:
-    """A list with its motors; null is a figure that is not known."""
+    """A list with its motors; an unknown figure is null."""
     if id == SERVER:
         motors = entries_of(request.app.state.catalogue.motors)
         return conditional(request, _whole(id, SERVER, [motor.model_dump() for motor in motors]))
-    saved = await motor_lists.found(request, id)
+    saved = await motor_lists.list_of(request, id)
     return conditional(request, _whole(id, saved.name, Raw(saved.content)), tag_of(saved))
 
 
@@ -166,11 +176,11 @@ async def read_motor_list(request: Request, id: schemas.ListId) -> Response:
     responses=schemas.answers(*(400, 403, 404, 408, 409, 412, 413, 415, 422), headers=schemas.headers("ETag")),
 )
 async def replace_motor_list(request: Request, id: schemas.ListId) -> Response:
-    """Replaces name and motors. What was taken from the list before keeps its figures."""
+    """Replaces name and motors of a list. Applications keep figures already taken from it."""
     body = await read_body(request)
     version = motor_lists.version_in(request, await motor_lists.changeable(request, id))
     draft = await compute(request, "pages", _draft, body)
-    saved = await motor_lists.replaced(request, id, draft, version)
+    saved = await motor_lists.replace(request, id, draft, version)
     return JSONBytes(encode(_line(saved)), headers={"ETag": tag_of(saved), "Cache-Control": "no-cache"})
 
 
@@ -184,9 +194,9 @@ async def replace_motor_list(request: Request, id: schemas.ListId) -> Response:
     openapi_extra=IF_MATCH,
 )
 async def delete_motor_list(request: Request, id: schemas.ListId) -> Response:
-    """Deletes a list permanently. What was taken from it keeps its figures."""
+    """Deletes a list permanently. Applications keep figures already taken from it."""
     version = motor_lists.version_in(request, await motor_lists.changeable(request, id))
-    await motor_lists.removed(request, id, version)
+    await motor_lists.remove(request, id, version)
     return Response(status_code=204)
 
 
@@ -195,13 +205,13 @@ def _draft(body: bytes) -> MotorListDraft:
 
 
 def _draft_of_table(reading: Reading, faults: Sequence[Sentence], name: str | None) -> MotorListDraft:
-    """A list out of a table; Problem 422 for answers that are none, open questions, and motors that can't be."""
+    """Draft of a list from a table; Problem 422 for invalid answers, open questions, and invalid motors."""
     if faults:
         raise Problem(422, faults, [Fault(ANSWER, fault.text, "answer") for fault in faults])
     table = reading.table or Table(problem=Sentence(NO_TABLE))
     require_whole(table)
     motors, refused = motors_in(table)
-    refused += [note for note in table.notes if note.template in (NO_FIGURE, NO_NAME)]
+    refused += [note for note in table.notes if note.template in (NO_FIGURE, NO_FIGURES, NO_NAME)]
     if refused:
         raise Problem(422, refused)
     try:
@@ -211,11 +221,7 @@ def _draft_of_table(reading: Reading, faults: Sequence[Sentence], name: str | No
 
 
 def _line(line: MotorListLine) -> MotorListSummary:
-    return MotorListSummary(line.id, line.name, line.motors, _moment(line.created), _moment(line.updated))
-
-
-def _moment(time: datetime) -> str:
-    return time.isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return MotorListSummary(line.id, line.name, line.motors, moment(line.created), moment(line.updated))
 
 
 def _whole(id: str, name: str, motors: object) -> bytes:

@@ -1,4 +1,4 @@
-"""The user's own motors over REST: all of them, and how far each is used on a gear."""
+"""The user's own motors over REST: all of them, and the utilisation of each on a gear."""
 
 from fastapi import APIRouter
 from starlette.datastructures import State
@@ -29,7 +29,7 @@ router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calcu
     responses=schemas.tagged(422),
 )
 async def motors(request: Request) -> Response:
-    """Motors of a supplement’s motors.csv; none where there is no such file, null where a figure is blank."""
+    """Motors in the supplement’s motors.csv; empty without that file. A blank figure is null."""
     book: Catalogue = request.app.state.catalogue
     return conditional(request, encode(MotorsReply(book.version, book.motors)))
 
@@ -43,19 +43,19 @@ async def motors(request: Request) -> Response:
     responses=schemas.answers(400, 404, 408, 413, 415, 422),
 )
 async def motors_of_gear(request: Request, designation: schemas.Designation) -> Response:
-    """Utilisation of each motor of motors.csv, in place of the application’s own, on a gear under an application."""
+    """Utilisation of each motor in motors.csv on a gear for an application, in place of the application’s own motor."""
     state: State = request.app.state
     gear = gear_named(designation, state.catalogue)
     body = await read_body(request)
-    return JSONBytes(await compute(request, "pages", _reply, body, gear, state.catalogue))
+    return JSONBytes(
+        await compute(
+            request, "pages", lambda: encode(motors_on_gear(parsed(Application, body), gear, state.catalogue))
+        )
+    )
 
 
 def motors_on_gear(application: Application, gear: Gear, catalogue: Catalogue) -> MotorsOnGearReply:
-    """How far each motor of the catalogue’s list is used on a gear, best first."""
+    """Reply with the utilisation of each motor of the catalogue’s list on a gear, best first."""
     uses = motors_on(application, gear, catalogue)
     replies = [MotorUseReply(use.motor, use.fits, use.governing, use.used, use.inertia_ratio) for use in uses]
     return MotorsOnGearReply(catalogue.version, gear.designation, replies)
-
-
-def _reply(body: bytes, gear: Gear, catalogue: Catalogue) -> bytes:
-    return encode(motors_on_gear(parsed(Application, body), gear, catalogue))

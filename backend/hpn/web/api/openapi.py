@@ -1,4 +1,4 @@
-"""The OpenAPI document: what FastAPI finds by itself, and what the direct routes know better."""
+"""OpenAPI document: FastAPI's own, completed with entries that it can't derive."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -25,7 +25,10 @@ TAGS = [
     {"name": "Catalogue", "description": "Published figures of the gears, each with its source."},
     {"name": "Motors", "description": "The user’s own motors, and the utilisation of each on a gear."},
     {"name": "Saved selections", "description": "Saved selections: save, list, read with differences, delete."},
-    {"name": "Machines", "description": "Machines with their axes and revisions; a selection is one with one axis."},
+    {
+        "name": "Machines",
+        "description": "Machines with their axes and revisions; a selection is a machine with one axis.",
+    },
     {"name": "Files", "description": "Report, workbook and Asset Administration Shell of a selection."},
     {"name": "Service", "description": "State of the service."},
 ]
@@ -51,7 +54,7 @@ async def document(request: Request) -> Response:
 
 
 def install(app: FastAPI, *bodies: type[BaseModel]) -> None:
-    """Have `app.openapi()` give the completed document, built when it is first asked for.
+    """Make `app.openapi()` return the completed document, built at its first call.
 
     `bodies` are the models of request bodies that routes read themselves.
     """
@@ -63,7 +66,7 @@ def install(app: FastAPI, *bodies: type[BaseModel]) -> None:
         models: list[Any] = [(model, "validation") for model in bodies]
         _, definitions = models_json_schema(models, ref_template="#/components/schemas/{model}")
         components = document["components"]
-        components |= {"securitySchemes": KEY_SCHEMES, "headers": schemas.header_components()}
+        components |= {"securitySchemes": KEY_SCHEMES, "headers": schemas.HEADER_COMPONENTS}
         components["schemas"] |= definitions["$defs"]
         _complete(document, _groups(app), app.state.settings)
         _give_formats(document)
@@ -81,7 +84,7 @@ def _groups(app: FastAPI) -> dict[tuple[str, str], RouteGroup | None]:
 def _complete(
     document: dict[str, Any], groups: Mapping[tuple[str, str], RouteGroup | None], settings: Settings
 ) -> None:
-    """Add keys, headers, and texts of parameters to every operation."""
+    """Add keys, headers and schemas of parameters to every operation."""
     for path, operations in document["paths"].items():
         for method, operation in operations.items():
             _say_keys(operation, groups[method.upper(), path], settings)
@@ -91,11 +94,11 @@ def _complete(
 
 
 FORMATS = {"number": "double", "integer": "int64"}
-"""Format of a number by its type: without one, clients in some languages compute in 32 bits."""
+"""Format of a number by its type: without it, clients in some languages compute in 32 bits."""
 
 
 def _give_formats(part: Any, name: str = "") -> None:
-    """Give every number below a part of the document its format; examples and the like are no schemas."""
+    """Add the format to each number's schema in a part of the document; examples and the like are no schemas."""
     if isinstance(part, list):
         for item in part:
             _give_formats(item)
@@ -108,11 +111,11 @@ def _give_formats(part: Any, name: str = "") -> None:
 
 
 VALUES = ("example", "examples", "default", "const", "enum")
-"""Keys under which values stand, not schemas."""
+"""Names whose content is a value, not a schema."""
 
 
 def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Settings) -> None:
-    """Keys that a route takes, and whether it can do without."""
+    """Add the keys that a route accepts, and the option of no key where none is needed."""
     if group is None:
         operation["security"] = []
         return
@@ -121,7 +124,7 @@ def _say_keys(operation: dict[str, Any], group: RouteGroup | None, settings: Set
 
 
 def _say_headers(operation: dict[str, Any]) -> None:
-    """Headers of every response of an operation; those of its rate where it has one."""
+    """Add the common headers to each response of an operation, and those of a rate unless the route is open."""
     always = schemas.headers("X-Request-ID", *(("RateLimit", "RateLimit-Policy") if operation["security"] else ()))
     for response in operation["responses"].values():
         response["headers"] = response.get("headers", {}) | always
@@ -131,13 +134,13 @@ def _describe(parameter: dict[str, Any]) -> None:
     if parameter["in"] == "query":
         _leave_out_null(parameter["schema"])
         if parameter["schema"].get("type") == "array":
-            parameter |= {"style": "form", "explode": True}  # named again for each value
+            parameter |= {"style": "form", "explode": True}  # the name is repeated for each value
     if suffix_of(parameter["name"]):
         parameter["schema"]["x-unit"] = symbol_of(parameter["name"])
 
 
 def _leave_out_null(schema: dict[str, Any]) -> None:
-    """FastAPI says of a parameter that may be left out that it may be null, which no query can say."""
+    """Remove null from the schema of an optional parameter: FastAPI adds it, but a query can't express it."""
     options = [option for option in schema.get("anyOf", ()) if option != {"type": "null"}]
     if len(options) == 1:
         del schema["anyOf"]

@@ -22,7 +22,7 @@ from hpn.web.motor_lists import motors_of
 
 router = APIRouter(prefix="/api/v1", tags=["Motors"], dependencies=[admit("calculator")])
 
-Failing = Annotated[bool, Query(description="True: the pairs that are not suitable, the nearest miss first.")]
+Failing = Annotated[bool, Query(description="True: returns the unsuitable pairs instead, the nearest miss first.")]
 
 
 @router.post(
@@ -34,7 +34,7 @@ Failing = Annotated[bool, Query(description="True: the pairs that are not suitab
     responses=schemas.answers(400, 408, 413, 415, 422),
 )
 async def pairs(request: Request, failing: Failing = False) -> Response:
-    """Every gear that the application allows with every motor, ranked; each is judged as `POST /api/v1/select` does."""
+    """Ranks every allowed gear with every motor; each pair is judged as in `POST /api/v1/select`."""
     state: State = request.app.state
     body = await read_body(request)
     wanted = await compute(request, "pages", parsed, Pairing, body)
@@ -50,7 +50,7 @@ def _reply(wanted: Pairing, motors: Sequence[MotorEntry], catalogue: Catalogue, 
 
 
 def _links(application: Application) -> Callable[[Application, str], str | None]:
-    """Links of pairs; none where the application alone has one that is too long."""
+    """Function that makes links of pairs; None for all if the application's own link is too long."""
     if len(to_link(application)) > LONGEST_LINK:
         return lambda equipped, gear: None
     return _link

@@ -1,4 +1,4 @@
-"""Replies of the API besides a selection, typed; encoded as JSON here and nowhere else."""
+"""Typed replies of the API except the selection; all JSON is encoded here."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ DIFFERENCES_SHOWN = 500
 MOST: Any = Field(max_length=DIFFERENCES_SHOWN)
 
 MOST_AT_ONCE = 10_000
-"""Applications of a batch as one JSON object."""
+"""Maximum applications of a batch as one JSON object."""
 
 SELECTIONS_LISTED = 200
-"""Most lines of a part of the list of saved selections."""
+"""Maximum lines of a part of the list of saved selections."""
 
 Version = Annotated[str, Field(description="Hash of the catalogue’s content, supplement included.")]
 
@@ -67,18 +67,21 @@ class BatchLine(Reply, frozen=True):
     status: Annotated[Literal["ok", "error"], Field(description="Outcome of the item.")]
     selected: Annotated[str | None, Field(description="Designation of the selected gear, or null.")] | UnsetType = UNSET
     governing_check: (
-        Annotated[str | None, Field(description="Check that is closest to its limit on that gear.")] | UnsetType
+        Annotated[str | None, Field(description="Check closest to its limit on that gear.")] | UnsetType
     ) = UNSET
     utilisation: Annotated[float | None, Field(description="Utilisation of that check.")] | UnsetType = UNSET
     suitable: Annotated[int, Field(description="Number of suitable gears.")] | UnsetType = UNSET
     holds: (
-        Annotated[bool | None, Field(description="True: the gear passes over the whole tolerance, if given.")]
+        Annotated[
+            bool | None,
+            Field(description="True: the gear passes over the whole tolerance; left out without tolerances."),
+        ]
         | UnsetType
     ) = UNSET
-    worst_utilisation: Annotated[float | None, Field(description="Its utilisation in the worst case.")] | UnsetType = (
-        UNSET
-    )
-    worst_governing_check: Annotated[str | None, Field(description="Check that has it.")] | UnsetType = UNSET
+    worst_utilisation: (
+        Annotated[float | None, Field(description="Utilisation of the gear in the worst case.")] | UnsetType
+    ) = UNSET
+    worst_governing_check: Annotated[str | None, Field(description="Check with that utilisation.")] | UnsetType = UNSET
     link: Annotated[str, Field(description=LINK)] | UnsetType = UNSET
     problem: Annotated[ProblemReply, Field(description="Reason for an item without a result.")] | UnsetType = UNSET
 
@@ -113,8 +116,8 @@ class MotorUseReply(Reply, frozen=True):
     """One of the user’s own motors on a gear."""
 
     motor: Annotated[ListedMotor, Field(description="The motor.")]
-    fits: Annotated[bool, Field(description="True if it passes every check of the motor whose figures are known.")]
-    governing_check: Annotated[str, Field(description="Check of the motor that is closest to its limit.")]
+    fits: Annotated[bool, Field(description="True: it passes every check of the motor with known figures.")]
+    governing_check: Annotated[str, Field(description="Check of the motor closest to its limit.")]
     utilisations: Annotated[
         Mapping[str, float],
         Field(
@@ -123,32 +126,33 @@ class MotorUseReply(Reply, frozen=True):
     ]
     inertia_ratio: Annotated[
         float | None,
-        Field(description="Inertia of the load over i² times that of the motor; null where one is not known."),
+        Field(description="Inertia of the load over i² times that of the motor; null where an inertia is not known."),
     ]
 
 
 class MotorsOnGearReply(Reply, frozen=True):
-    """The user’s own motors on a gear: those that fit first, the smallest rated torque first, then the nearest miss."""
+    """The user’s own motors on a gear: fitting motors first, by rising rated torque, then the others, the nearest miss
+    first."""
 
     catalogue_version: Version
     designation: Annotated[str, Field(description="The gear.")]
     motors: Annotated[
         list[MotorUseReply],
         Field(
-            description="Every motor of motors.csv with a figure that is checked; where an inertia ratio is required, "
-            "every one with an inertia."
+            description="Every motor of motors.csv with a checked figure; if an inertia ratio is required, only motors "
+            "with an inertia."
         ),
     ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OneGearReply(Gear):
-    """One gear by itself, and once more in the form of the whole catalogue, so that one reader serves both."""
+    """One gear as a single object, and again in the form of the whole catalogue, so that one reader serves both."""
 
     catalogue_version: Version
     gears: Annotated[
         tuple[Gear, ...],
-        Field(min_length=1, max_length=1, description="The gear, as the list of all gears has it."),
+        Field(min_length=1, max_length=1, description="The gear in the form of the catalogue’s list."),
     ]
 
 
@@ -161,15 +165,19 @@ class EnvelopeReply(Reply, frozen=True):
         list[EnvelopeCurve], Field(min_length=3, max_length=4, description="One curve per load coefficient.")
     ]
     sources: Annotated[
-        dict[str, str], Field(description="Source of its limits or points; marks those that a user supplied.")
+        dict[str, str], Field(description="Source of its limits or points; user-supplied ones are marked.")
     ]
 
 
 class SizingReply(Reply, frozen=True):
-    """Application of another tool’s sizing."""
+    """Application read from another tool’s sizing."""
 
-    application: Annotated[Any, Field(description="The application, as POST /api/v1/select takes it.")]
-    unused: Annotated[tuple[str, ...], Field(description="Paths of the elements of which nothing was taken.")]
+    application: Annotated[Any, Field(description="The application, in the form of POST /api/v1/select.")]
+    unused: Annotated[tuple[str, ...], Field(description="Paths of the elements that were not used.")]
+    note: Annotated[
+        str | None,
+        Field(description="Names the unused elements that act on the load but are part of no phase; null for none."),
+    ] = None
 
 
 # --- Saved selections -------------------------------------------------------------------------------------------------
@@ -180,7 +188,7 @@ Moment = Annotated[str, Field(description="Moment in UTC.", examples=["2026-11-2
 
 
 class SavedReply(Reply, frozen=True):
-    """Where the saved selection is."""
+    """Id and address of a saved document."""
 
     id: Id
     url: Url
@@ -191,26 +199,26 @@ class SummaryReply(Reply, frozen=True):
 
     id: Id
     url: Url
-    created: Annotated[str, Field(description="When it was saved, UTC, ISO 8601.")]
+    created: Annotated[str, Field(description="Moment of saving, UTC, ISO 8601.")]
     title: Annotated[str | None, Field(description="Title for people.")]
     reference: Annotated[str | None, Field(description="The caller’s own number.")]
     author: Annotated[str | None, Field(description="Author.")]
     revision: Annotated[str | None, Field(description="Its revision in the caller’s documents.")]
     ordering_code: Annotated[
-        str | None, Field(description="Gear, output version and motor adapter as ordered, as far as they were given.")
+        str | None, Field(description="Gear, output version and motor adapter as ordered, as far as given.")
     ]
-    selected: Annotated[str | None, Field(description="Designation of the gear selected then, or null.")]
+    selected: Annotated[str | None, Field(description="Designation of the gear selected at that time, or null.")]
     designation: Annotated[
         str | None,
         Field(
-            description="Gear that its page and files show first: that of the ordering code, else the selected one or "
-            "the nearest miss; null where an earlier version has saved what can’t be read."
+            description="Gear shown first on its page and in its files: the gear of the ordering code, else the "
+            "selected gear, else the nearest miss; null where the result saved by an earlier version can’t be read."
         ),
     ]
     status: Annotated[str | None, Field(description="Verdict on that gear, as saved.")]
     utilisation: Annotated[float | None, Field(description="Utilisation of that gear, as saved.")]
-    engine_version: Annotated[str, Field(description="Version of the calculation then.")]
-    catalogue_version: Annotated[str, Field(description="Hash of the catalogue’s content then.")]
+    engine_version: Annotated[str, Field(description="Version of the calculation at that time.")]
+    catalogue_version: Annotated[str, Field(description="Hash of the catalogue’s content at that time.")]
 
 
 class SelectionToday(Reply, frozen=True):
@@ -218,16 +226,16 @@ class SelectionToday(Reply, frozen=True):
 
     selected: Annotated[str | None, Field(description="Designation of the gear selected today, or null.")]
     status: Annotated[
-        str | None, Field(description="Verdict on the gear that its page shows first; open where there is no answer.")
+        str | None, Field(description="Verdict on the gear shown first on its page; open without an answer.")
     ]
-    verdict_changed: Annotated[bool, Field(description="True where gear or verdict are others than saved.")]
+    verdict_changed: Annotated[bool, Field(description="True: gear or verdict differ from the saved ones.")]
 
 
 class SelectionLineReply(SummaryReply, frozen=True):
-    """One saved selection in a list, with what it gets today."""
+    """One saved selection in a list, with today's verdict."""
 
     today: Annotated[
-        SelectionToday | None, Field(description="By today’s engine and catalogue; null until it is known.")
+        SelectionToday | None, Field(description="Verdict by today’s engine and catalogue; null until it is computed.")
     ]
 
 
@@ -238,28 +246,29 @@ class SelectionListReply(Reply, frozen=True):
         list[SelectionLineReply], Field(max_length=SELECTIONS_LISTED, description="Saved selections.")
     ]
     next_cursor: Annotated[str | None, Field(description="Cursor of the next page; null at the end.")]
-    deleted: Annotated[list[str], Field(description="Ids that were deleted since then, where that is asked.")]
-    pending: Annotated[int, Field(description="Number of selections whose `today` is not known yet.")]
+    deleted: Annotated[list[str], Field(description="Ids deleted since `deleted_since`; empty without it.")]
+    pending: Annotated[int, Field(description="Number of selections whose `today` is not computed yet.")]
 
 
 class TodayReply(Reply, frozen=True):
-    """Versions of today's engine and catalogue, and how their result differs from the saved one."""
+    """Versions of today's engine and catalogue, and differences of their result from the saved one."""
 
     engine_version: Annotated[str, Field(description="Version of the calculation today.")]
     catalogue_version: Annotated[str, Field(description="Hash of the catalogue’s content today.")]
     difference_count: Annotated[int, Field(description="Number of fields that differ.")]
-    differences: Annotated[list[Difference], MOST, Field(description="The first 500 of them.")]
+    differences: Annotated[list[Difference], MOST, Field(description="The first 500 differences.")]
     figure_differences: Annotated[
         Annotated[list[FigureDifference], MOST] | None,
         Field(
-            description="Published figures of the candidates that differ, the first 500; null where the catalogue of "
-            "that time is not kept."
+            description="Published figures of the candidates that differ, the first 500; null if the catalogue of that "
+            "time is not kept."
         ),
     ]
     problem: Annotated[
         ProblemReply | None,
         Field(
-            description="Why the application can’t be answered today, for example because the catalogue lacks a ratio."
+            description="Reason why the application can’t be calculated today, for example a ratio that the catalogue "
+            "lacks."
         ),
     ]
 
@@ -270,10 +279,10 @@ class RevisionReply(Reply, frozen=True):
     label: Annotated[str, Field(description="Label.")]
     number: Annotated[int, Field(description="Place in the order of revisions, from 1.")]
     created: Moment
-    created_by: Annotated[str | None, Field(description="Key that froze it.")]
+    created_by: Annotated[str | None, Field(description="Name of the key that froze it.")]
     author: Annotated[str | None, Field(description="Author.")]
-    checked: Annotated[str | None, Field(description="Initials of the check.")]
-    approved: Annotated[str | None, Field(description="Initials of the approval.")]
+    checked: Annotated[str | None, Field(description="Initials of the checker.")]
+    approved: Annotated[str | None, Field(description="Initials of the approver.")]
     note: Annotated[str | None, Field(description="Note.")]
     axis_count: Annotated[int, Field(description="Number of axes.")]
     engine_version: Annotated[str, Field(description="Version of the calculation.")]
@@ -281,17 +290,17 @@ class RevisionReply(Reply, frozen=True):
 
 
 class SavedSelectionReply(SummaryReply, frozen=True):
-    """A saved selection as it was saved, and what differs today. Nothing is rewritten."""
+    """A saved selection as it was saved, and the differences of today. Saved content is never rewritten."""
 
-    application: Annotated[dict[str, Any], Field(description="The application as it was given.")]
+    application: Annotated[dict[str, Any], Field(description="The application as sent.")]
     gear: Annotated[
         Gear | None,
         Field(
-            description="Published figures of the gear `designation` in the catalogue of that time; null where that "
-            "is not kept."
+            description="Published figures of the gear `designation` in the catalogue of that time; null if that "
+            "catalogue is not kept."
         ),
     ]
     result: Annotated[Selection, Field(description="The complete reply.")]
-    label: Annotated[str, Field(description="Label of the revision that this is.")]
+    label: Annotated[str, Field(description="Label of this revision.")]
     revisions: Annotated[list[RevisionReply], Field(description="Its revisions, the latest first.")]
     today: Annotated[TodayReply, Field(description="Differences today.")]

@@ -1,4 +1,4 @@
-"""Revisions of documents over REST, and what is read out of the working copy: gears to order and fewest kinds."""
+"""Revisions of documents over REST, and figures of the working copy: gears to order and fewest kinds."""
 
 from typing import Annotated
 
@@ -6,13 +6,11 @@ from fastapi import APIRouter, Path, Query
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.catalogue import Catalogue
 from hpn.documents.axis import MOST_AXES
 from hpn.documents.differences import DocumentDifferences, differences
-from hpn.documents.gears import GearOrder, Placed, gears_of
+from hpn.documents.gears import GearOrder, gears_of
 from hpn.documents.kinds import MachineKinds
 from hpn.documents.revision import RevisionBlock, decode
-from hpn.store import Machine
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
 from hpn.web.api.machines import ADDRESS
@@ -21,12 +19,12 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of
 from hpn.web.door.pools import compute
-from hpn.web.edits import kinds_in
+from hpn.web.edits import kinds_in, placed
 from hpn.web.freezing import freeze, revision
-from hpn.web.machines import found, made_before, once_of
+from hpn.web.machines import machine_of, made_before, once_of
 from hpn.web.states import catalogues_of, documents_of, states_of
 
-Label = Annotated[str, Path(max_length=20, description="Label of the revision, in any case.")]
+Label = Annotated[str, Path(max_length=20, description="Label of the revision; upper and lower case are the same.")]
 
 router = APIRouter(prefix=f"{ADDRESS}/{{id}}", tags=["Machines"])
 
@@ -42,7 +40,7 @@ router = APIRouter(prefix=f"{ADDRESS}/{{id}}", tags=["Machines"])
     responses=schemas.FREEZES,
 )
 async def save_revision(request: Request, id: schemas.Id) -> Response:
-    """Freezes the working copy under a label: own, inherited and resolved values and answers. It never changes."""
+    """Freezes the working copy under a label: own, inherited and resolved values, and answers. It never changes."""
     once = once_of(request, body := await read_body(request))
     block = parsed(RevisionBlock, body)
     if once is not None and (label := await made_before(request, once)) is not None:
@@ -67,7 +65,7 @@ async def _kept_revision(request: Request, id: str, label: str) -> Response:
 )
 async def list_revisions(request: Request, id: schemas.Id) -> Response:
     """Revisions of a document, the latest first."""
-    await found(request, id, [])
+    await machine_of(request, id, [])
     lines = await request.app.state.store.revisions(id)
     body = encode(replies.RevisionsReply([replies.revision(each) for each in lines]))
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
@@ -82,8 +80,8 @@ async def list_revisions(request: Request, id: schemas.Id) -> Response:
     responses=schemas.answers(403, 404, 422, headers=schemas.headers("ETag")),
 )
 async def read_revision(request: Request, id: schemas.Id, label: Label) -> Response:
-    """A document as it was frozen, its answers of then."""
-    await found(request, id, [])
+    """A document as it was frozen, with its answers of that time."""
+    await machine_of(request, id, [])
     line, content = await revision(request, id, label)
     body = await compute(request, "pages", lambda: encode(replies.frozen(line, decode(content))))
     return JSONBytes(body, headers={"ETag": etag_of(content), "Cache-Control": "no-cache"})
@@ -103,10 +101,9 @@ async def read_differences(
     before: Annotated[str, Query(alias="from", max_length=20, description="Label of a revision, now or today.")],
     after: Annotated[str, Query(alias="to", max_length=20, description="Label of a revision, now or today.")],
 ) -> Response:
-    """Differences between two revisions, a revision and the working copy (`now`), or a state and what today's
-    catalogue and engine say to it (`today`); by axis, those with another verdict first.
-    """
-    machine = await found(request, id)
+    """Differences between two revisions, between a revision and the working copy (`now`), or between a state and its
+    recalculation by today's catalogue and engine (`today`); by axis, changed verdicts first."""
+    machine = await machine_of(request, id)
     states = await states_of(request, machine, before, after)
     body = await compute(
         request, "batches", lambda: encode(differences(*documents_of(*states), catalogues_of(*states)))
@@ -123,10 +120,9 @@ async def read_differences(
     responses=schemas.answers(403, 404, 422),
 )
 async def read_gears(request: Request, id: schemas.Id) -> Response:
-    """Gears of all axes by their ordering codes, with quantities and masses."""
-    machine = await found(request, id)
-    axes = (Placed(axis.number, axis.quantity, axis.ordering_code, axis.answer["selected"]) for axis in machine.items)
-    body = encode(gears_of(axes, request.app.state.catalogue))
+    """Gears of all axes by ordering code, with quantities and masses."""
+    machine = await machine_of(request, id)
+    body = encode(gears_of((placed(axis.number, axis) for axis in machine.items), request.app.state.catalogue))
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
 
 
@@ -141,15 +137,10 @@ async def read_gears(request: Request, id: schemas.Id) -> Response:
 async def read_kinds(
     request: Request,
     id: schemas.Id,
-    most: Annotated[
-        int | None, Query(ge=1, le=MOST_AXES, description="Largest number of kinds that is asked for.")
-    ] = None,
+    most: Annotated[int | None, Query(ge=1, le=MOST_AXES, description="Largest number of kinds to compute.")] = None,
 ) -> Response:
-    """Sets of least weight for each number of kinds, from the machine's own down to the least."""
-    machine = await found(request, id)
-    body = await compute(request, "batches", _kinds, machine, request.app.state.catalogue, most)
+    """Lightest set of gears for each number of kinds, from the machine's own number down to the smallest possible."""
+    machine = await machine_of(request, id)
+    catalogue = request.app.state.catalogue
+    body = await compute(request, "batches", lambda: encode(kinds_in(machine, catalogue, most)))
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
-
-
-def _kinds(machine: Machine, catalogue: Catalogue, most: int | None) -> bytes:
-    return encode(kinds_in(machine, catalogue, most))

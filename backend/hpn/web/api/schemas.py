@@ -1,4 +1,4 @@
-"""Entries of the OpenAPI document on routes: bodies that they read themselves, headers, problems and links."""
+"""OpenAPI entries of routes: bodies that they read themselves, headers, problems and links."""
 
 from collections.abc import Iterable
 from typing import Annotated, Any
@@ -39,13 +39,13 @@ def request_body(model: type[BaseModel], *media_types: str) -> dict[str, Any]:
 
 
 def batch_body() -> dict[str, Any]:
-    """OpenAPI entry of a batch's body, as one JSON object or as lines."""
+    """OpenAPI entry of a batch's body: one JSON object, or lines."""
     body = request_body(Batch)
     body["requestBody"]["content"][LINES] = {
         "schema": {
             "type": "string",
-            "description": "Lines that end in a line feed, each a JSON object as the schema BatchItem says: an "
-            "application with its reference. Any number of them; blank lines are skipped.",
+            "description": "Lines that end in a line feed, each a JSON object of the schema BatchItem: an application "
+            "with its reference. Any number of lines; blank lines are skipped.",
         }
     }
     return body
@@ -56,25 +56,23 @@ def fleet_body(media_types: Iterable[str]) -> dict[str, Any]:
     table = {
         "type": "string",
         "format": "binary",
-        "description": "A row for each axis: `axis`, lists named as the fields of a phase, and the other fields of an "
-        "application by their paths with dots, such as `requirements.life_h`. Or a row for each phase, those of an "
-        "axis together: the other columns stand in its first row, or repeat the same value.",
+        "description": "One row per axis: column `axis`, columns of lists named like the fields of a phase, and the "
+        "other fields of an application by dotted path, such as `requirements.life_h`. Or one row per phase, the rows "
+        "of an axis together: the other columns are filled in its first row, or repeat the same value.",
     }
     return {"requestBody": {"required": True, "content": {kind: {"schema": dict(table)} for kind in media_types}}}
 
 
-OF_AXES = (
-    "A row for each axis or phase, with whatever headings; `axes.csv` and `axes.parquet` of a machine are such tables."
-)
-OF_MOTORS = "A row for each motor, with the names and units of its data sheet as headings."
+OF_AXES = "One row per axis or phase, under any headings; `axes.csv` and `axes.parquet` of a machine are such tables."
+OF_MOTORS = "One row per motor; the headings are names and units as in its data sheet."
 
 
-def with_tables(body: dict[str, Any], media_types: Iterable[str], said: str = OF_AXES) -> dict[str, Any]:
-    """The entry of a body that may be a table, too: of axes, unless something else is said."""
+def with_tables(body: dict[str, Any], media_types: Iterable[str], of: str = OF_AXES) -> dict[str, Any]:
+    """OpenAPI entry of a body that may also be a table; `of` describes the table."""
     table = {
         "type": "string",
         "format": "binary",
-        "description": said,
+        "description": of,
     }
     body["requestBody"]["content"] |= {kind: {"schema": dict(table)} for kind in media_types}
     return body
@@ -84,22 +82,22 @@ def with_tables(body: dict[str, Any], media_types: Iterable[str], said: str = OF
 
 HEADERS = {
     "X-Request-ID": "Id of the request, as in the log of the service.",
-    "RateLimit": "Requests left and seconds until the rate starts again; where there is a rate.",
-    "RateLimit-Policy": "Requests allowed in a number of seconds; where there is a rate.",
+    "RateLimit": "Requests left and seconds until the rate starts again, if a rate is set.",
+    "RateLimit-Policy": "Requests allowed in a number of seconds, if a rate is set.",
     "Retry-After": "Seconds to wait before the next request.",
-    "Accept-Encoding": "identity, where the body was refused because it is compressed.",
-    "WWW-Authenticate": "Kind of key that is needed.",
+    "Accept-Encoding": "identity: the body was refused because it is compressed.",
+    "WWW-Authenticate": "Kind of key to send.",
     "ETag": "Tag of this state, for If-None-Match and If-Match.",
-    "Allow": "Methods that there are at this address.",
-    "Location": "Address of the saved selection, or the address to use instead.",
-    "Idempotency-Replayed": "true, where this answers for what the same Idempotency-Key saved before.",
+    "Allow": "Methods of this address.",
+    "Location": "Address of the new resource, or the address to use instead.",
+    "Idempotency-Replayed": "true: the reply to an earlier request with the same Idempotency-Key, repeated.",
     "Link": "Address of the next page, rel=next; none at the end.",
-    "Preference-Applied": "Preference of `Prefer` that was applied.",
+    "Preference-Applied": "Applied preference of `Prefer`.",
     "Content-Disposition": "File name for a download.",
     "Content-Language": "Language of the file.",
     "HPN-Ignored-Columns": "Index columns of pandas that were ignored, in quotes and percent-encoded; if any.",
 }
-"""Headers of responses, and what they say; components of the document."""
+"""Headers of responses with their descriptions; components of the document."""
 
 
 def headers(*names: str) -> dict[str, Any]:
@@ -107,13 +105,12 @@ def headers(*names: str) -> dict[str, Any]:
     return {name: {"$ref": f"#/components/headers/{name}"} for name in names}
 
 
-def header_components() -> dict[str, Any]:
-    """Headers of responses by name."""
-    return {name: _text(description) for name, description in HEADERS.items()}
-
-
 def _text(description: str) -> dict[str, Any]:
     return {"description": description, "schema": {"type": "string"}}
+
+
+HEADER_COMPONENTS = {name: _text(description) for name, description in HEADERS.items()}
+"""Headers of responses by name."""
 
 
 OF_STATUS = {
@@ -139,13 +136,13 @@ def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 ANYWHERE: dict[int | str, dict[str, Any]] = {
-    307: {"description": "The address without the slash at its end.", "headers": headers("Location")},
+    307: {"description": "Redirect to the address without its trailing slash.", "headers": headers("Location")},
     **problems(405),
 }
-"""OpenAPI entries of what every address may answer."""
+"""OpenAPI entries of answers of every address."""
 
 GUARDED = problems(401, 414, 421, 429, 503)
-"""OpenAPI entries of what a route that is not open to all may answer for its keys, query, host, rate and service."""
+"""OpenAPI entries of answers of a guarded route: about keys, query, host, rate and load."""
 
 HAS_IT_ALREADY: dict[int | str, dict[str, Any]] = {
     304: {"description": "The client has the current version.", "headers": headers("ETag")}
@@ -159,7 +156,7 @@ def answers(*statuses: int, status: int = 200, **more: Any) -> dict[int | str, d
 
 
 def tagged(*statuses: int, **more: Any) -> dict[int | str, dict[str, Any]]:
-    """OpenAPI entries of an answer with an entity tag, which a client may have already, and of its problems."""
+    """OpenAPI entries of an answer with an entity tag, of 304, and of its problems."""
     return answers(*statuses, headers=headers("ETag"), **more) | HAS_IT_ALREADY
 
 
@@ -167,8 +164,8 @@ def batch_answers(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """OpenAPI entries of a batch's answer, which comes in the form of its body."""
     lines = {
         "type": "string",
-        "description": "Lines that end in a line feed, each a JSON object as the schema BatchLine says: the answer to "
-        "one line, in their order.",
+        "description": "Lines that end in a line feed, each a JSON object of the schema BatchLine: the answer to one "
+        "line, in the order of the body.",
     }
     return answers(*statuses, content={LINES: {"schema": lines}})
 
@@ -190,7 +187,7 @@ def fleet_answers(media_types: Iterable[str], *statuses: int) -> dict[int | str,
 
 
 def _links(id: str, *operations: str) -> dict[str, Any]:
-    """OpenAPI entries that lead to operations on a saved selection, whose id is where the expression says."""
+    """OpenAPI entries that lead to operations on a saved document; the expression `id` locates its id."""
     return {name: {"operationId": name, "parameters": {"id": id}} for name in operations}
 
 
@@ -224,29 +221,31 @@ FROM_MACHINE = _links("$request.path.id", *OF_A_MACHINE[1:])
 Id = Annotated[str, Path(description="Id from the reply to saving.")]
 ListId = Annotated[str, Path(description="Id of a list of motors; `server` for motors.csv.")]
 Revision = Annotated[
-    str | None, Query(max_length=20, description="Label of a revision of the selection, in any case; else the latest.")
+    str | None,
+    Query(
+        max_length=20,
+        description="Label of a revision of the selection, upper and lower case the same; by default the latest.",
+    ),
 ]
 Designation = Annotated[str, Path(description="Designation in any of the printed spellings, such as HPN-20A-5.")]
 Size = Annotated[str, Path(description="Size, such as 20A.")]
 
 
 def header(name: str, description: str) -> dict[str, Any]:
-    """OpenAPI entry of a request header that a route reads."""
+    """OpenAPI entry of a request header."""
     return {"name": name, "in": "header", "required": False, **_text(description)}
 
 
-IF_NONE_MATCH = {
-    "parameters": [header("If-None-Match", "Tag of the version that the client has: 304 if it is current.")]
-}
+IF_NONE_MATCH = {"parameters": [header("If-None-Match", "Tag of the client’s version: 304 if it is current.")]}
 
 
 ONCE_OF_STATE: dict[str, Any] = {
     "parameters": [
         header("Idempotency-Key", "Makes a retry safe."),
-        header("If-Match", "Tag of the state that it is made of."),
+        header("If-Match", "Tag of the document’s state; 412 if it has changed since."),
     ]
 }
-"""Headers of a request that is made once, of one state of a document."""
+"""Headers of a request that is executed once, for one state of a document."""
 
 FREEZES = answers(*(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=headers("Location", "ETag"))
 """Answers to freezing a revision, of a machine or of a selection."""

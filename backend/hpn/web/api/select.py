@@ -25,15 +25,15 @@ router = APIRouter(prefix="/api/v1", tags=["Selection"], dependencies=[admit("ca
 
 MOST_CANDIDATES = 1000
 FIELDS = ("a selection", Selection.__struct_fields__, "candidates", Candidate.__struct_fields__)
-"""Names that a reply and each of its candidates have."""
+"""Arguments of `field_names` for a reply and its candidates."""
 
 Samples = Annotated[
     int,
     Query(
         ge=0,
         le=MOST_SAMPLES,
-        description="Points of the tolerances that are sampled for the share of those that fail; fewer of a motion "
-        "and of a long cycle.",
+        description="Number of points sampled within the tolerances for the share that fails; fewer for a motion and "
+        "for a long cycle.",
     ),
 ]
 
@@ -46,8 +46,8 @@ Top = Annotated[
 Fields = Annotated[
     str | None,
     Query(
-        description="Names of the fields wanted, with commas; those of a candidate as `candidates.name`. The reply has "
-        "these alone."
+        description="Names of the fields to return, separated by commas; fields of a candidate as `candidates.name`. "
+        "Without it, all."
     ),
 ]
 
@@ -75,12 +75,12 @@ def _reply(
 ) -> tuple[str | None, bytes]:
     application = parsed(Application, body)
     selection = select(application, state.catalogue, to_link, samples)
-    shown = structs.replace(selection, candidates=selection.candidates[:top])
-    return selection.selected, encode(shown) if wanted is None else _part(shown, wanted)
+    answer = structs.replace(selection, candidates=selection.candidates[:top])
+    return selection.selected, encode(answer) if wanted is None else _part(answer, wanted)
 
 
 def _part(selection: Selection, wanted: FieldNames) -> bytes:
-    """JSON of some fields of a selection, and of its candidates."""
+    """JSON of the selected fields of a selection and of its candidates."""
     whole: dict[str, Any] = msgspec.json.decode(encode(selection))
     part = {name: value for name, value in whole.items() if name in wanted.names}
     if wanted.of_each:

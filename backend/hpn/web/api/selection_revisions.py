@@ -1,4 +1,4 @@
-"""Revisions of saved selections over REST: each the whole selection as it was under a label."""
+"""Revisions of saved selections over REST: each is the whole selection in its state under a label."""
 
 from typing import Annotated
 
@@ -23,7 +23,7 @@ from hpn.web.door.pools import calculate
 from hpn.web.freezing import freeze, revision
 from hpn.web.machines import made_before, once_of
 
-Label = Annotated[str, Path(max_length=20, description="Label of the revision, in any case.")]
+Label = Annotated[str, Path(max_length=20, description="Label of the revision; upper and lower case are the same.")]
 
 router = APIRouter(prefix="/api/v1/selections/{id}/revisions", tags=["Saved selections"])
 
@@ -31,11 +31,11 @@ router = APIRouter(prefix="/api/v1/selections/{id}/revisions", tags=["Saved sele
 class SelectionRevision(RevisionBlock):
     """An application to be frozen as the next revision of a selection."""
 
-    application: Application = Field(description="The application, whole; it takes the place of the one before.")
+    application: Application = Field(description="The complete application; it replaces the previous one.")
     ordering_code: Line | None = Field(
         None,
-        description="Gear, output version and motor adapter as ordered, as far as they are known; none where it is "
-        "left out.",
+        description="Gear, output version and motor adapter as ordered, as far as known; if omitted, the revision has "
+        "none.",
         examples=["HPN-20A-5-J6-BH-AF1"],
     )
 
@@ -51,7 +51,7 @@ class SelectionRevision(RevisionBlock):
     responses=schemas.FREEZES,
 )
 async def save_revision(request: Request, id: schemas.Id) -> Response:
-    """Calculates an application and freezes it with its whole result as the next revision, which never changes."""
+    """Calculates an application and freezes it with its whole result as the next revision. A revision never changes."""
     once = once_of(request, body := await read_body(request))
     label = None if once is None else await made_before(request, once)
     if label is None:
@@ -65,8 +65,8 @@ async def save_revision(request: Request, id: schemas.Id) -> Response:
 
 
 def _drafted(body: bytes, catalogue: Catalogue) -> tuple[SelectionRevision, Draft]:
-    sent = parsed(SelectionRevision, body)
-    return sent, draft_in(catalogue, sent.application, Labels(ordering_code=sent.ordering_code))
+    revision = parsed(SelectionRevision, body)
+    return revision, draft_in(catalogue, revision.application, Labels(ordering_code=revision.ordering_code))
 
 
 @router.get(
@@ -94,5 +94,5 @@ async def list_revisions(request: Request, id: schemas.Id) -> Response:
     responses=schemas.tagged(404, 409, 422),
 )
 async def read_revision(request: Request, id: schemas.Id, label: Label) -> Response:
-    """Input and result as they were frozen, and the differences of today, as GET /api/v1/selections/{id} has them."""
+    """Input and result as frozen, and today's differences, in the form of GET /api/v1/selections/{id}."""
     return conditional(request, *await represented(request, id, label))

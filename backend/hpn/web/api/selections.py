@@ -1,4 +1,4 @@
-"""Saved selections over REST: save, read with what differs today, list, search, rename, delete."""
+"""Saved selections over REST: save, read with today's differences, list, search, rename, delete."""
 
 from functools import partial
 from typing import Annotated, Any
@@ -35,9 +35,9 @@ from hpn.web.archive import (
     SaveRequest,
     changeable,
     draft_of,
-    found,
     keep,
     not_found,
+    on_saved,
     url_of,
     with_catalogue,
 )
@@ -57,14 +57,14 @@ from hpn.web.todays import versions_of
 
 REPLAYED = "Idempotency-Replayed"
 KEY = (
-    "Makes a retry safe: the same key and content is saved once, other content is a 422. A key belongs to its caller, "
-    "an API key or else an address, and lasts: once its selection is deleted it is answered with 410, so that a late "
-    "retry saves nothing anew."
+    "Makes a retry safe: the same key with the same content is saved once; with other content it is a 422. A key "
+    "belongs to its caller (API key, else address) and does not expire: after its selection is deleted, a late retry "
+    "is answered with 410 and saves nothing."
 )
 
 
 router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
-"""Its routes are of different groups, which each declares."""
+"""Router without a common group: each route declares its own."""
 
 
 @router.post(
@@ -77,7 +77,7 @@ router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
     | {
         "parameters": [
             schemas.header("Idempotency-Key", KEY),
-            schemas.header("Prefer", "return=representation: the whole saved selection."),
+            schemas.header("Prefer", "return=representation: returns the whole saved selection."),
         ]
     },
     response_model=SavedReply,
@@ -89,7 +89,7 @@ router = APIRouter(prefix="/api/v1/selections", tags=["Saved selections"])
     ),
 )
 async def save_selection(request: Request) -> Response:
-    """Saves an application with its result; once answered with 201 it is durable."""
+    """Saves an application with its result; the selection is durable once the reply is 201."""
     key = idempotency_key(request)
     body = await read_body(request)
     owner, catalogue = request.state.api_key, request.app.state.catalogue
@@ -115,7 +115,7 @@ def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None
 def draft_in(
     catalogue: Catalogue, application: Application, labels: Labels, key: str | None = None, owner: str | None = None
 ) -> Draft:
-    """Record of an application in a body; its faults are named where they stand there."""
+    """Record of an application in a body; its faults have the pointers of the body."""
     try:
         return draft_of(catalogue, application, labels, key, owner)
     except InputError as error:
@@ -138,7 +138,7 @@ async def read_selection(
     id: schemas.Id,
     revision: schemas.Revision = None,
 ) -> Response:
-    """Input and result as saved, and the differences under today's engine and catalogue, verdicts first."""
+    """Input and result as saved, and the differences by today's engine and catalogue, verdicts first."""
     return conditional(request, *await represented(request, id, revision))
 
 
@@ -155,8 +155,8 @@ async def read_selection(
 async def list_selections(request: Request, query: Annotated[ListQuery, Query()]) -> Response:
     """Saved selections, newest first; the Link header gives the next page.
 
-    `today` is their gear and verdict by today's engine and catalogue; that is made in the background, and `pending`
-    says of how many it is not known yet. `differs=verdict` lists those that get another one.
+    `today` is the gear and verdict by today's engine and catalogue. It is computed in the background; `pending` is the
+    number of selections that still lack it. `differs=verdict` lists the selections with another gear or verdict.
     """
     store: Store = request.app.state.store
 
@@ -182,7 +182,7 @@ async def list_selections(request: Request, query: Annotated[ListQuery, Query()]
     responses=schemas.answers(*(400, 403, 404, 408, 409, 412, 413, 415, 422), headers=schemas.headers("ETag")),
 )
 async def rename_selection(request: Request, id: schemas.Id) -> Response:
-    """Changes title or reference of a saved selection; null removes one, and a field that is left out stays.
+    """Changes title or reference of a saved selection; null removes a field, an omitted field stays.
 
     The body is a JSON merge patch (RFC 7396). Calculated figures are never rewritten. Where the service has API keys, a
     key renames the selections that it saved, and the key named `admin` renames any.
@@ -210,7 +210,7 @@ async def rename_selection(request: Request, id: schemas.Id) -> Response:
 async def delete_selection(request: Request, id: schemas.Id) -> Response:
     """Deletes a saved selection permanently. A retry of saving it, with its Idempotency-Key, is then answered with 410.
 
-    Where the service has API keys, a key deletes what it has saved, and the one named `admin` deletes any.
+    Where the service has API keys, a key deletes the selections that it saved, and the key named `admin` deletes any.
     """
     store: Store = request.app.state.store
     await changeable(request, id)
@@ -221,11 +221,11 @@ async def delete_selection(request: Request, id: schemas.Id) -> Response:
 
 
 async def matched_version(request: Request, id: str) -> int | None:
-    """Version of the state that `If-Match` names, None where it names none; Problem 412 where it names another.
+    """Present version if `If-Match` names its state, None if it accepts any; Problem 412 for another state.
 
-    The write then asks for this version: a look beforehand holds for nobody who writes in between.
+    The write must then ask for this version, as others may write after this check.
     """
-    if request.headers.get("if-match", "*").strip() == "*":  # any state, as long as there is one
+    if request.headers.get("if-match", "*").strip() == "*":  # any existing state
         return None
     saved, then = await with_catalogue(request.app.state, id)
     require_match(request, _tag_of(saved, then, request.app.state.catalogue))
@@ -237,13 +237,13 @@ def _tag_of(saved: SavedSelection, then: Catalogue | None, today: Catalogue) -> 
 
 
 def _tag(id: str, state: tuple[int, str], then: str | None, today: Catalogue) -> str:
-    """Entity tag of a saved selection: everything that its representation is made of, by its versions."""
+    """Entity tag of a saved selection, from the versions of everything in its representation."""
     return etag_of(f"{id} {' '.join(map(str, state))} {then} {today.version} {ENGINE_VERSION}".encode())
 
 
 async def represented(request: Request, id: str, label: str | None = None) -> tuple[bytes, str]:
-    """Saved selection as `SavedSelectionReply`, application and result as the saved bytes, and its entity tag."""
-    return await found(request, id, partial(_represented, catalogue=request.app.state.catalogue), label)
+    """JSON of a saved selection as `SavedSelectionReply`, application and result in the saved bytes; its entity tag."""
+    return await on_saved(request, id, partial(_represented, catalogue=request.app.state.catalogue), label)
 
 
 def _represented(reopened: Reopened, catalogue: Catalogue) -> tuple[bytes, str]:
@@ -276,7 +276,7 @@ def _today(reopened: Reopened, catalogue: Catalogue) -> TodayReply:
 
 
 def _line(selection: SelectionLine, key: str) -> SelectionLineReply:
-    """A line of the list, with what it gets by the versions of a key, if that is known."""
+    """Line of the list, with its verdict by the versions of a key, if that is known."""
     today = None
     if selection.today_of == key and selection.today_changed is not None:
         verdict = selection.today_selected, selection.today_status
@@ -286,5 +286,4 @@ def _line(selection: SelectionLine, key: str) -> SelectionLineReply:
 
 def _summary(selection: SelectionLine) -> SummaryReply:
     own: dict[str, Any] = {name: getattr(selection, name, None) for name in SummaryReply.__struct_fields__}
-    created = selection.created.isoformat(timespec="microseconds").replace("+00:00", "Z")
-    return SummaryReply(**own | {"url": url_of(selection.id), "created": created})
+    return SummaryReply(**own | {"url": url_of(selection.id), "created": replies.moment(selection.created)})

@@ -1,4 +1,4 @@
-"""`POST /api/v1/sizing`: the application in a Sizing of Power Drive Trains (IDTA 02021) of another tool."""
+"""`POST /api/v1/sizing`: the application in another tool's Sizing of Power Drive Trains (IDTA 02021)."""
 
 from functools import partial
 from typing import Any
@@ -33,18 +33,19 @@ BODY: dict[str, Any] = {
 @router.post(
     "/sizing",
     operation_id="readSizing",
-    summary="Read the application out of a sizing by IDTA 02021",
+    summary="Read the application from a sizing by IDTA 02021",
     openapi_extra=BODY,
     response_model=SizingReply,
     responses=schemas.answers(400, 408, 413, 415, 422, 503),
 )
 async def read_sizing(request: Request) -> Response:
-    """Gives the application for `POST /api/v1/select` or `/selections`, and the elements of which nothing was taken.
+    """Returns the application for `POST /api/v1/select` or `/selections`, and the elements that were not used.
 
-    Elements are found by their semantic ids. A package of this service gives its own application again.
+    Elements are found by their semantic ids. A package made by this service returns its original application.
     """
     body = await read_body(request, PACKAGE, JSON)
-    found = await compute_beside(request, "files", partial(opened, body))
-    if found.problem:
-        raise Problem(422, found.problem)
-    return JSONBytes(encode(SizingReply(msgspec.Raw(found.text.encode()), found.unused)))
+    sizing = await compute_beside(request, "files", partial(opened, body))
+    if sizing.problem:
+        raise Problem(422, sizing.problem)
+    note = sizing.note.text if sizing.note else None
+    return JSONBytes(encode(SizingReply(msgspec.Raw(sizing.text.encode()), sizing.unused, note)))

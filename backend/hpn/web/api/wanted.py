@@ -1,4 +1,4 @@
-"""Parameter `fields`: the names of what a reply is to have, and of what each entry of its list is to have."""
+"""Parameter `fields`: names of the fields that a reply and each entry of its list contain."""
 
 from collections.abc import Collection
 from typing import NamedTuple
@@ -7,14 +7,14 @@ from hpn.web.door.problems import Problem
 
 
 class FieldNames(NamedTuple):
-    """Names of the fields that are wanted, and of those of each entry of the list."""
+    """Names of the wanted fields, and of the wanted fields of each entry of the list."""
 
     names: Collection[str]
     of_each: Collection[str]
 
 
 def field_names(text: str, thing: str, known: Collection[str], each: str, known_of_each: Collection[str]) -> FieldNames:
-    """Names of a parameter, those of an entry behind `each` and a point; Problem 422 for one that is not known."""
+    """Names in a parameter; `each` and a point precede those of an entry. Problem 422 for an unknown name."""
     names = {name.strip() for name in text.split(",")}
     of_each = {name.removeprefix(f"{each}.") for name in names if name.startswith(f"{each}.")}
     names -= {f"{each}.{name}" for name in of_each}

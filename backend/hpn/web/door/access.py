@@ -16,6 +16,7 @@ from hpn.web.door.parameters import require_declared
 from hpn.web.door.problems import Problem
 from hpn.web.door.rates import Limiter, subject_of
 from hpn.web.settings import RouteGroup, Settings
+from hpn.words.wording import N_, Sentence
 
 LIMIT_OF: Mapping[RouteGroup, str] = {
     "calculator": "calculator",
@@ -26,19 +27,19 @@ LIMIT_OF: Mapping[RouteGroup, str] = {
     "deleting": "writing",
     "metrics": "metrics",
 }
-"""Which rate counts a group's requests."""
+"""Name of the rate that counts the requests of a group."""
 
 MAXIMUM_QUERY_BYTES = 60_000
-"""Longest query, which servers and proxies on the way let through."""
+"""Longest query; servers and proxies on the way let this much through."""
 
 SAVED: frozenset[RouteGroup] = frozenset({"reading", "listing", "writing", "deleting"})
-"""Groups whose answers tell of saved selections."""
+"""Groups whose answers contain saved data; they are private and asked for anew each time."""
 
 API = ("/api/", "/mcp")
-"""Where the paths that programs ask for begin."""
+"""Beginnings of the paths for programs."""
 
 ADMIN = "admin"
-"""Name of the key that renames and deletes what any key, or none, has saved."""
+"""Name of the key that may rename and delete every selection, whichever key saved it, or none."""
 
 
 class Gate:
@@ -57,10 +58,11 @@ class Gate:
         )
 
     def admit(self, request: Request, group: RouteGroup) -> None:
-        """Count a request; raises Problem 429 where there were too many, then 401 for a key unknown or missing."""
+        """Count a request. Raise Problem 429 for too many, 401 for an unknown or missing key, 414 for a long query."""
         presented = presented_key(request.headers.raw) if self._keys else None
         name = request.state.api_key = None if presented is None else holder(presented, self._keys)
-        caller = request.state.caller = f"key {name}" if name else _subject(request)
+        subject = subject_of(request.client.host) if request.client else "unknown"
+        caller = request.state.caller = f"key {name}" if name else subject
         if group in SAVED:
             add_headers(request, {"Cache-Control": "private, no-cache"})
         counted = self._limiter.admit(LIMIT_OF[group], caller)
@@ -68,38 +70,57 @@ class Gate:
             add_headers(request, counted.headers)
             if not counted.granted:
                 raise too_many(counted.rate, counted.wait_seconds)
-        if name is None and (presented is not None or group in self._guarded):
+        if name is None and (presented is not None or not self.may(request, group)):
             raise key_needed(request.scope["path"], is_unknown=bool(presented))
         if len(request.scope.get("query_string", b"")) > MAXIMUM_QUERY_BYTES:
             raise Problem(414, f"a link may have {MAXIMUM_QUERY_BYTES} bytes at most; post what is longer")
 
+    def may(self, request: Request, group: RouteGroup) -> bool:
+        """True if a group needs no key, or the request has one."""
+        return group not in self._guarded or request.state.api_key is not None
+
+    def require(self, request: Request, group: RouteGroup) -> None:
+        """Raise Problem 401 unless a request may do what a group does, besides the group of its route."""
+        if not self.may(request, group):
+            raise key_needed(request.scope["path"])
+
     @property
     def has_keys(self) -> bool:
-        """True where what is saved belongs to keys; without any, everybody may rename and delete."""
+        """True if the service has keys, to which saved data belong; without keys everybody may rename and delete."""
         return bool(self._keys)
 
-    def require_owner(self, request: Request, owner: str | None) -> None:
-        """Raise Problem 403 unless the request's key owns what it is to change, or is the one that may change any.
+    def may_change(self, request: Request, owner: str | None) -> bool:
+        """True if a request's key may change data of an owner; always true on a service without keys."""
+        return not self._keys or request.state.api_key in (ADMIN, owner or ADMIN)
 
-        On a page, where no key was sent, raise 401: the browser then asks for one.
+    def require_owner(self, request: Request, owner: str | None) -> None:
+        """Raise Problem 403 unless a request may change data of an owner.
+
+        Raise 401 for a page that was asked for without a key: the browser then asks the reader for one.
         """
+        if self.may_change(request, owner):
+            return
         name, path = request.state.api_key, request.scope["path"]
         if name is None and not path.startswith(API):
             raise key_needed(path)
-        if name is None or name not in (ADMIN, owner):
-            sent = "no key was sent" if name is None else f"the key {name} did not save it"
-            text = f"{sent}; only the key that saved this selection, or the one named {ADMIN}, may rename or delete it"
-            raise Problem(403, text)
+        reason = "no key was sent" if name is None else f"the key {name} did not save it"
+        text = f"{reason}; only the key that saved this selection, or the one named {ADMIN}, may rename or delete it"
+        raise Problem(403, text)
+
+    def require_key_to_edit(self, request: Request, owner: str | None) -> None:
+        """Raise Problem 401 or 403 as `require_owner` does, if the page's address has the parameter `edit`."""
+        if "edit" in request.query_params:
+            self.require_owner(request, owner)
 
 
 class _Admission:
-    """The dependency by which a route belongs to a group."""
+    """Dependency that puts a route into a group."""
 
     def __init__(self, group: RouteGroup) -> None:
         self.group = group
 
     async def __call__(self, request: Request) -> None:
-        """Pass the request, or raise Problem; a route of the API takes the parameters that it declares alone."""
+        """Admit the request or raise Problem; a route of the API takes only parameters that it declares."""
         gate: Gate = request.app.state.gate
         gate.admit(request, self.group)
         if request.scope["path"].startswith(API):
@@ -107,20 +128,20 @@ class _Admission:
 
 
 async def _pass(request: Request) -> None:
-    """Neither guarded nor limited."""
+    """Admit every request: no key, no limit."""
 
 
 def admit(group: RouteGroup) -> Any:
-    """The dependency of a route of this group."""
+    """Dependency of a route of this group."""
     return Depends(_Admission(group))
 
 
 OPEN: Any = Depends(_pass)
-"""The dependency of a route that load balancers and browsers must always reach."""
+"""Dependency of a route that load balancers and browsers must always reach."""
 
 
 def group_of(route: RouteContext) -> RouteGroup | None:
-    """Group that a route declares, None for one that is open; LookupError for one that declares neither."""
+    """Group that a route declares, None for an open route; LookupError for a route that declares neither."""
     declared = getattr(route, "dependencies", ())  # a route of Starlette's own has none
     for dependency in declared:
         if isinstance(dependency.dependency, _Admission):
@@ -130,17 +151,14 @@ def group_of(route: RouteContext) -> RouteGroup | None:
     raise LookupError(f"{route.path} declares no group: give it `admit(...)` or `OPEN` as a dependency")
 
 
-def _subject(request: Request) -> str:
-    return subject_of(request.client.host) if request.client else "unknown"
-
-
 def too_many(rate: object, wait_seconds: int) -> Problem:
-    """429, with the time to wait."""
-    return Problem.later(f"{rate} are allowed; try again in {wait_seconds} s", wait_seconds, 429)
+    """Problem 429 with the time to wait."""
+    values = {"rate": str(rate), "seconds": str(wait_seconds)}
+    return Problem.later(Sentence(N_("{rate} are allowed; try again in {seconds} s"), values), wait_seconds, 429)
 
 
 def key_needed(path: str, *, is_unknown: bool = False) -> Problem:
-    """401; on a page the browser asks for the key itself, as a password with any user name."""
+    """Problem 401; on a page the browser asks for the key, as the password of any user name."""
     scheme = "Bearer" if path.startswith(API) else "Basic"
     text, kind = "a key is needed: send it as `Authorization: Bearer …` or `X-API-Key: …`", "api-key-needed"
     if is_unknown:

@@ -1,7 +1,7 @@
-"""A process for work in which no thread can be stopped: kept from call to call, and killed where nobody waits any more.
+"""Process for work that a thread could not be stopped in: kept from call to call, killed when its caller has left.
 
-It imports what its calls name and nothing else of the web, so that it starts soon. Its answers are plain data, decoded
-as the type that the called function says: whatever a file makes of the process, nothing of it is run by the service.
+The process imports only the modules that its calls name, so it starts fast. Its answers are plain data, decoded as the
+called function's return type: even if a hostile file takes over the process, the service runs no code of it.
 """
 
 import os
@@ -28,34 +28,34 @@ T = TypeVar("T")
 
 NICENESS = 10
 EXHAUSTED = 75
-"""Exit code of a process whose work has met the bound of its memory."""
+"""Exit code of a process whose work reached its memory bound."""
 
 PARENT_SECONDS = 0.5
-"""Time after which a process looks whether the one that started it is still there."""
+"""Interval at which a process checks that its parent still runs."""
 
 KEPT_SHARE = 0.4
-"""Share of its bound up to which a process is kept for the next call: of more, much would lie idle in it."""
+"""Share of the memory bound above which a process is not kept for the next call: too much memory would lie idle."""
 
 PLAIN_MEMORY = {"ARROW_DEFAULT_MEMORY_POOL": "system", "OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
-"""Environment of a bounded process: no library sets memory aside that the work then lacks."""
+"""Environment of a bounded process: keeps libraries from reserving memory that the work then lacks."""
 
 
 _LENGTH = struct.Struct("<Q")
-"""Bytes of an answer, before it."""
+"""Length of an answer in bytes, sent before it."""
 
 
 class Bounds(NamedTuple):
-    """Most memory of a process, code and libraries included, and most time of one call on the clock."""
+    """Maximum memory of a process, code and libraries included, and maximum wall-clock time of one call."""
 
     memory_bytes: int
     seconds: float
 
 
 class EndedError(Exception):
-    """The process has ended before its work was done, or could not be started; the text says how.
+    """The process ended before its work was done, or could not be started; the text gives the cause.
 
-    `is_excess` tells that the work took more than it may, `is_killed` that something else than the service killed it:
-    the system, where the machine has no more memory.
+    `is_excess`: the work exceeded its bounds. `is_killed`: the process was killed, and not by the service; the system
+    does so when the machine is out of memory.
     """
 
     def __init__(self, text: str, *, is_excess: bool = False, is_killed: bool = False) -> None:
@@ -64,7 +64,7 @@ class EndedError(Exception):
 
 
 class CallResult(msgspec.Struct, array_like=True):
-    """End of a call: its result, or the traceback of what went wrong; `has_grown` advises to end the process."""
+    """End of a call: its result or the traceback of its error; `has_grown` advises the caller to end the process."""
 
     is_done: bool
     has_grown: bool
@@ -72,7 +72,7 @@ class CallResult(msgspec.Struct, array_like=True):
 
     @classmethod
     def received(cls, pipe: IO[bytes]) -> "CallResult":
-        """The next one; EOFError, or ValueError for what is none."""
+        """Next result from a pipe; EOFError at its end, ValueError for bytes that are not a result."""
         head = pipe.read(_LENGTH.size)
         if len(head) < _LENGTH.size:
             raise EOFError
@@ -80,26 +80,26 @@ class CallResult(msgspec.Struct, array_like=True):
         return msgspec.msgpack.decode(content, type=cls)
 
     def send(self, pipe: IO[bytes]) -> None:
-        """Write it."""
+        """Write the result to a pipe."""
         content = msgspec.msgpack.encode(self)
         pipe.write(_LENGTH.pack(len(content)) + content)
         pipe.flush()
 
 
 class ProcessBeside:
-    """At most one such process, for one caller at a time; with bounds, the system ends it where its work meets one."""
+    """At most one process, for one caller at a time; with bounds, the system ends the process at a bound."""
 
     def __init__(self, bounds: Bounds | None = None) -> None:
         self._bounds = bounds
-        self._calling = threading.Lock()  # whoever has it may use the pipes
-        self._lock = threading.Lock()  # whoever has it may start and end the process
+        self._calling = threading.Lock()  # held to use the pipes
+        self._lock = threading.Lock()  # held to start or end the process
         self._process: subprocess.Popen[bytes] | None = None
         self._is_ended = False
         self.is_taken = False
 
     @contextmanager
-    def taken(self) -> Iterator[None]:
-        """Have others of a pool look for another one."""
+    def at_work(self) -> Iterator[None]:
+        """Mark the process as taken, so that other callers of the pool choose another."""
         self.is_taken = True
         try:
             yield
@@ -107,7 +107,7 @@ class ProcessBeside:
             self.is_taken = False
 
     def call(self, work: Callable[[], T], given_up: threading.Event) -> T:
-        """Result of work; EndedError, or RuntimeError with the traceback of what goes wrong there."""
+        """Result of work; RuntimeError with the traceback of an error in the process, EndedError if it ends."""
         call, kind = pickle.dumps(work), _result_type(work)
         with self._calling:
             with self._lock:
@@ -130,29 +130,29 @@ class ProcessBeside:
         return cast(T, result)
 
     def _ended(self, code: int) -> EndedError:
-        """Error for a process that has ended. Whatever ends a bounded one without killing it is its work: libraries
-        abort, or worse, where they get no memory.
+        """Error for a process that has ended. A bounded process that was not killed has ended by its work: libraries
+        abort, or worse, when they get no memory.
         """
         is_killed = code == -signal.SIGKILL
         is_excess = self._bounds is not None and not is_killed
         return EndedError(f"exit code {code}", is_excess=is_excess, is_killed=is_killed and not self._is_ended)
 
     def end(self) -> None:
-        """Kill the process; whoever calls at the moment gets an EndedError."""
+        """Kill the process; a caller under way gets an EndedError."""
         with self._lock:
             if self._process is not None:
                 self._is_ended = True
                 self._process.kill()
 
     def close(self) -> None:
-        """Kill the process and wait until it has gone; whoever calls at the moment gets an EndedError first."""
+        """Kill the process and wait until it has ended; a caller under way gets an EndedError first."""
         self.end()
         with self._calling:
             if self._process is not None:
                 self._reap(self._process)
 
     def _reap(self, process: "subprocess.Popen[bytes]") -> None:
-        """End a process that may be on its way out: how it ends by itself is told by its code."""
+        """End a process that may be ending by itself: wait briefly first, so that its own exit code is kept."""
         with self._lock:
             try:
                 process.wait(0.1)
@@ -174,9 +174,9 @@ class ProcessBeside:
                 [sys.executable, *quiet, "-m", __name__, *map(str, self._bounds or ())],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL if self._bounds else None,  # libraries quote what a stranger's file says
+                stderr=subprocess.DEVNULL if self._bounds else None,  # libraries quote from a stranger's file
                 env=environment | PLAIN_MEMORY if self._bounds else environment,
-                start_new_session=True,  # Ctrl+C is for the service, which finishes what runs
+                start_new_session=True,  # Ctrl+C is for the service, which finishes running requests
             )
         except OSError as error:
             raise EndedError(f"it can’t be started: {error}") from None
@@ -185,20 +185,20 @@ class ProcessBeside:
 
 
 def _result_type(work: Callable[[], Any]) -> Any:
-    """Type that a function says to return; any plain data where it says none."""
+    """Annotated return type of a function; any plain data where it has no annotation."""
     return get_type_hints(work.func if isinstance(work, partial) else work).get("return", Any)
 
 
 def _forsaken(process: "subprocess.Popen[bytes]") -> None:
-    """End a process whose owner is gone without having closed it."""
+    """End a process whose owner was deleted without closing it."""
     process.kill()
     process.communicate()
 
 
 def main(bounds: Bounds | None) -> None:
-    """Answer calls until there are no more; what they print goes where errors go."""
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # of supervisors that send it to all: the service ends this one last
-    with suppress(OSError):  # where memory runs out, the system ends this one before the service
+    """Answer calls until their pipe ends; output that they print goes to standard error."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # supervisors may signal all processes: this one ends last
+    with suppress(OSError):  # when memory runs out, the system kills this one before the service
         Path("/proc/self/oom_score_adj").write_text("1000", encoding="utf-8")
     if bounds:
         _restrain(bounds)
@@ -214,14 +214,14 @@ def main(bounds: Bounds | None) -> None:
 
 
 def _end_with_parent(parent: int) -> None:
-    """End this process when the one that started it is gone, which work in hand would not notice."""
+    """End this process when its parent is gone; work under way would not notice."""
     while os.getppid() == parent:
         time.sleep(PARENT_SECONDS)
     os._exit(1)
 
 
 def _done(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, msgspec.Raw]:
-    """Result of the next call, or the traceback of what goes wrong."""
+    """True and the next call's result, or False and the traceback of its error."""
     try:
         result = pickle.load(calls)()
         return True, msgspec.Raw(msgspec.msgpack.encode(result, enc_hook=_plain))
@@ -232,21 +232,21 @@ def _done(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, msgspec.Raw]:
 
 
 def _plain(value: object) -> str:
-    """A text of a kind of its own as a text."""
+    """Plain text of a subclass of str; TypeError for any other type."""
     if isinstance(value, str):
         return str(value)
     raise TypeError(f"no plain data: {type(value)}")
 
 
 def _peak_bytes() -> int:
-    """Most memory that this process has had, 0 where the system doesn't say it."""
+    """Peak memory of this process, 0 where the system doesn't report it."""
     status = Path("/proc/self/status")
     match = re.search(r"VmHWM:\s+(\d+) kB", status.read_text(encoding="ascii")) if status.exists() else None
     return int(match[1]) * 1024 if match else 0
 
 
 def _restrain(bounds: Bounds) -> None:
-    """Take no more memory than is allowed, and stand back behind the service."""
+    """Limit this process's memory, and give the service priority over it."""
     os.nice(NICENESS)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     hard = resource.getrlimit(resource.RLIMIT_DATA)[1]

@@ -15,28 +15,29 @@ from hpn.application import unique
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 from hpn.words.fields import MAXIMUM_PHASES
+from hpn.words.wording import N_, Sentence
 
 M = TypeVar("M", bound=BaseModel)
 
 JSON, MERGE_PATCH, FORM = "application/json", "application/merge-patch+json", "application/x-www-form-urlencoded"
 NDJSON = ("application/x-ndjson", "application/ndjson", "application/jsonl")
-"""Names of JSON in lines, the usual one first."""
+"""Content types of JSON lines, the usual one first."""
 
 MOST_OBJECTS, MOST_NAMES, MOST_LISTS = MAXIMUM_PHASES + 100, 8 * MAXIMUM_PHASES + 1000, 10_000
-"""Most objects, names and lists in the JSON of an application; the longest one stays below."""
+"""Maximum objects, names and lists in the JSON of an application; the longest application stays below."""
 
 PIECE_BYTES = 256_000
-"""Size of the pieces that a long body is handed on in."""
+"""Size of the pieces in which a long body is passed on."""
 
 MOST_PAIRS = MOST_NAMES
-"""Parameters of the longest form."""
+"""Maximum fields of a form; the longest form stays below."""
 
 
 async def read_body(request: Request, *content_types: str, maximum_bytes: int = 0) -> bytes:
-    """Body of a request, JSON where no content types are named; without a byte order mark before it (RFC 8259, 8.1).
+    """Body of a request, JSON where no content types are named; JSON loses a byte order mark (RFC 8259, 8.1).
 
-    Raises Problem 415 for any other content type and for a compressed body, 413 above `maximum_bytes`, by default those
-    of the settings, 408 when it has not arrived in the seconds of the settings.
+    Raises Problem 415 for any other content type and for a compressed body, 413 above `maximum_bytes` (by default the
+    limit of the settings), 408 for a body that has not arrived within the time of the settings.
     """
     settings: Settings = request.app.state.settings
     wanted, body = content_types or (JSON,), bytearray()
@@ -59,10 +60,10 @@ async def pass_body(
     pause_seconds: float,
     seconds: float,
 ) -> None:
-    """Hand a body on in pieces as it arrives, so that memory holds one of them.
+    """Pass a body on in pieces as it arrives, so that memory holds only one piece.
 
-    Raises Problem 415 for a compressed body, 413 above `maximum_bytes`, 408 where nothing arrives for `pause_seconds`,
-    or not all in `seconds`.
+    Raises Problem 415 for a compressed body, 413 above `maximum_bytes`, 408 when nothing arrives for `pause_seconds` or
+    the body is incomplete after `seconds`, 400 for a lost connection.
     """
     require_plain(request)
     too_large = _too_large(request, maximum_bytes)
@@ -88,7 +89,7 @@ async def pass_body(
 
 
 def require_plain(request: Request) -> None:
-    """Raise Problem 415 for a body that its Content-Encoding says is compressed: nothing here unpacks one."""
+    """Raise Problem 415 for a body with a compressing Content-Encoding: nothing here unpacks it."""
     encoding = ",".join(request.headers.getlist("content-encoding")).lower()
     if any(coding.strip() not in ("", "identity") for coding in encoding.split(",")):
         text = f"send the body uncompressed (the Content-Encoding header says {encoding[:40]})"
@@ -96,8 +97,8 @@ def require_plain(request: Request) -> None:
 
 
 def _too_large(request: Request, maximum_bytes: int) -> Problem:
-    """413 to be raised for a body that turns out to be too large; raised at once where it is said beforehand."""
-    problem = Problem(413, f"the body may have {maximum_bytes} bytes at most")
+    """Problem 413 for a body that turns out too large; raised at once if its Content-Length is."""
+    problem = Problem(413, Sentence(N_("the body may have {most} bytes at most"), {"most": str(maximum_bytes)}))
     declared = request.headers.get("content-length", "")
     if declared.isascii() and declared.isdigit() and int(declared[:20]) > maximum_bytes:
         raise problem
@@ -114,7 +115,7 @@ def parsed(model: type[M], text: AnyStr, bound: Callable[[AnyStr], None] | None 
     """Value of a model in JSON; raises ValidationError, or Problem as `require_bounded` and `require_unique` do."""
     (bound or require_bounded)(text)
     try:
-        content = from_json(text)  # the library reads a long list several times as fast from values as from JSON
+        content = from_json(text)  # pydantic validates a long list several times as fast from values as from JSON
     except ValueError as error:
         fault = InitErrorDetails(type="json_invalid", input=text, ctx={"error": str(error)})
         raise ValidationError.from_exception_data(model.__name__, [fault]) from None
@@ -124,9 +125,9 @@ def parsed(model: type[M], text: AnyStr, bound: Callable[[AnyStr], None] | None 
 
 
 def require_unique(text: str | bytes, value: Any) -> None:
-    """Raise Problem 422 for JSON, whose value is given, with a name twice in one object: only the last one counts."""
+    """Raise Problem 422 for JSON with a name twice in one object, of which parsing kept the last; `value` is parsed."""
     content = text.encode() if isinstance(text, str) else text
-    try:  # a name that is lost takes its colon along; those in strings are kept, and only an escape adds one
+    try:  # a lost name loses its colon, too; colons in strings stay, and only an escape adds one
         if b"\\u003" not in content and content.count(b":") == orjson.dumps(value).count(b":"):
             return
     except TypeError:  # an integer beyond 64 bits
@@ -138,13 +139,13 @@ def require_unique(text: str | bytes, value: Any) -> None:
 
 
 def require_bounded(text: AnyStr) -> None:
-    """Raise Problem 422 for JSON with more in it than any application has, before it is parsed.
+    """Raise Problem 422 for JSON with more objects, names or lists than any application has, before it is parsed.
 
-    Of a text within the limit of bytes, values can take a hundred times as much memory, and errors seconds.
+    The values of a text within the byte limit can take a hundred times its memory, and their errors take seconds.
     """
     marks = ("{", ":", "[") if isinstance(text, str) else (b"{", b":", b"[")
     objects, names, lists = map(text.count, marks)
-    if objects > MOST_OBJECTS:  # phases are the only objects that an application has many of
+    if objects > MOST_OBJECTS:  # only phases can be many objects
         detail = f"must have at most {MAXIMUM_PHASES} phases"
         raise Problem(422, detail, [(("duty_cycle", "phases"), detail)])
     if names > MOST_NAMES or lists > MOST_LISTS:
@@ -153,7 +154,7 @@ def require_bounded(text: AnyStr) -> None:
 
 
 def pairs_of(text: str | bytes) -> list[tuple[str, str]]:
-    """Names and values of a query or form, in their order; Problem 422 for more than any form has."""
+    """Names and values of a query or form, in their order; Problem 422 for more fields than any form has."""
     try:
         return parse_qsl(
             text if isinstance(text, str) else text.decode(errors="replace"), True, max_num_fields=MOST_PAIRS
@@ -163,7 +164,7 @@ def pairs_of(text: str | bytes) -> list[tuple[str, str]]:
 
 
 def late(seconds: float) -> Problem:
-    """408, and the last answer on its connection: what is left of the body is not waited for."""
+    """Problem 408, which closes its connection: the rest of the body is not waited for."""
     return Problem(408, f"the body did not arrive within {seconds:g} s", headers={"Connection": "close"})
 
 

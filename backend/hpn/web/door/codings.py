@@ -1,4 +1,4 @@
-"""Content codings: which ones a client accepts, and answers compressed for those that do."""
+"""Content codings that a client accepts, and compression of answers."""
 
 from collections.abc import Iterable
 
@@ -8,7 +8,7 @@ from starlette.types import Receive, Scope, Send
 
 
 def accepted_codings(header: str, among: Iterable[str]) -> list[str]:
-    """Codings that an Accept-Encoding header accepts, in the order given."""
+    """Codings of `among` that an Accept-Encoding header accepts, in the order of `among`."""
     weights: dict[str, str] = {}
     for part in header.lower().split(","):
         coding, _, parameter = part.partition(";")
@@ -17,7 +17,7 @@ def accepted_codings(header: str, among: Iterable[str]) -> list[str]:
 
 
 class Packing(GZipMiddleware):
-    """Compresses answers for clients that accept gzip; Starlette alone takes `gzip;q=0` for a wish."""
+    """Compresses answers for clients that accept gzip; Starlette's own middleware takes `gzip;q=0` as acceptance."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request."""

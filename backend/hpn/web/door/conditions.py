@@ -9,7 +9,7 @@ from starlette.responses import Response
 from hpn.web.door.problems import Problem
 
 IDEMPOTENCY_KEY = re.compile(r'"?([\x21\x23-\x7e]{1,200})"?')
-"""Visible ASCII, with or without the quotes of a structured field."""
+"""Key of visible ASCII, with or without the quotes of a structured field."""
 
 REPRESENTATION = re.compile(r"(?:^|[,;\s])return\s*=\s*\"?representation\b", re.I)
 
@@ -20,7 +20,7 @@ def etag_of(body: bytes) -> str:
 
 
 def conditional(request: Request, body: bytes, etag: str = "") -> Response:
-    """JSON with its entity tag, or 304 where the client has it already; to be asked for anew each time."""
+    """Response of JSON with its entity tag, or 304 if the client has this state; caches must revalidate it."""
     etag = etag or etag_of(body)
     headers = {"ETag": etag, "Cache-Control": "no-cache"}
     if has_already(request, etag):
@@ -29,12 +29,12 @@ def conditional(request: Request, body: bytes, etag: str = "") -> Response:
 
 
 def has_already(request: Request, etag: str) -> bool:
-    """True for a client that has this state already."""
+    """True if the client has this state already (`If-None-Match`)."""
     return _lists(request.headers.get("if-none-match", ""), etag, weakly=True)
 
 
 def require_match(request: Request, etag: str) -> None:
-    """Raise Problem 412 where `If-Match` names another state than this one."""
+    """Raise Problem 412 if `If-Match` names another state."""
     tags = request.headers.get("if-match")
     if tags is not None and not _lists(tags, etag, weakly=False):
         raise other_state()
@@ -46,7 +46,7 @@ def other_state() -> Problem:
 
 
 def require_done(done: bool, version: int | None, gone: Problem, overtaken: Problem | None = None) -> None:
-    """Raise what kept a write from being done: `gone` where any version would have done, else `overtaken` or 412."""
+    """Raise the reason of a write that failed: `gone` if any version was acceptable, else `overtaken` or 412."""
     if not done:
         raise gone if version is None else overtaken or other_state()
 
@@ -57,7 +57,7 @@ def _lists(header: str, etag: str, *, weakly: bool) -> bool:
 
 
 def idempotency_key(request: Request) -> str | None:
-    """Key by which a repeated request of the same caller is known, or None; Problem 400 for one that can't be a key."""
+    """Key that identifies a caller's repeated request, or None; Problem 400 for a malformed key."""
     key = request.headers.get("idempotency-key")
     if key is None:
         return None
@@ -65,7 +65,7 @@ def idempotency_key(request: Request) -> str | None:
     if match is None:
         raise Problem(400, "Idempotency-Key must be 1 to 200 visible ASCII characters, such as a UUID")
     name, caller = request.state.api_key, request.state.caller
-    # An address is kept as part of a hash alone; the blank keeps it apart from the names of keys.
+    # An address is only stored hashed; the blank distinguishes it from the names of keys.
     return f"{name}:{match[1]}" if name else f"address {hashlib.sha256(f'{caller} {match[1]}'.encode()).hexdigest()}"
 
 

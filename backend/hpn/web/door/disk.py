@@ -1,4 +1,4 @@
-"""Bytes that arrive faster than they are worked on wait on the disk: so many of all requests of a process together."""
+"""Limit of the bytes that requests of a process keep on disk until they are worked on."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ RETRY_SECONDS = 30
 
 
 class Disk:
-    """Bytes that all requests of one process may set aside; at `app.state.disk`."""
+    """Bytes that all requests of one process together may set aside; at `app.state.disk`."""
 
     def __init__(self, total: int) -> None:
         self.total = total
@@ -17,7 +17,7 @@ class Disk:
 
     @contextmanager
     def share(self) -> Iterator["SpoolShare"]:
-        """Bytes that one request sets aside, given back at its end."""
+        """Yield the share of one request, given back at its end."""
         share = SpoolShare(self)
         try:
             yield share
@@ -33,7 +33,7 @@ class SpoolShare:
         self.taken = 0
 
     def take(self, count: int) -> None:
-        """Set more aside; Problem 413 for more than there is room for at all, 503 where others have too much there."""
+        """Set more aside; Problem 413 for more than the total, 503 while other requests hold too much of it."""
         if self.taken + count > self._disk.total:
             raise Problem(413, f"more than {self._disk.total} bytes can’t be set aside; send less at once")
         if self._disk.taken + count > self._disk.total:
@@ -43,6 +43,6 @@ class SpoolShare:
         self._disk.taken += count
 
     def give_back(self) -> None:
-        """Set nothing aside any more."""
+        """Give all bytes back."""
         self._disk.taken -= self.taken
         self.taken = 0

@@ -1,16 +1,16 @@
-"""HEAD wherever there is GET: the same headers, and no body."""
+"""HEAD for every route that has GET: the same headers without the body."""
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 
 class Heads:
-    """Has the routes answer HEAD as GET, and keeps the body back; outside of what compresses, which needs the body."""
+    """Has the routes answer HEAD as GET, and drops the body. Wraps the compression, which needs the body."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on, as GET where it is HEAD."""
+        """Pass the request on; HEAD becomes GET."""
         if scope["type"] != "http" or scope["method"] != "HEAD":
             await self.app(scope, receive, send)
             return

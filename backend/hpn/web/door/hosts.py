@@ -1,5 +1,5 @@
-"""Names under which the service answers, and pages that its forms come from: no link leads elsewhere, no page elsewhere
-reads or changes anything.
+"""Hosts for which the service answers, and origins of its forms: links lead to this service, and pages of other sites
+can read and change nothing.
 """
 
 from collections.abc import Collection
@@ -14,17 +14,17 @@ from hpn.web.door.problems import Problem
 from hpn.words.wording import N_
 
 ANY_HOST = frozenset({"/healthz", "/readyz"})
-"""Paths that load balancers ask for by an address; their answers hold no link."""
+"""Paths that load balancers ask for by IP address; their answers contain no link."""
 
 LOCAL = frozenset({"localhost", "127.0.0.1", "::1"})
-"""Names of this machine for itself."""
+"""Names of the local machine."""
 
 LONGEST_NAMED = 100
-"""Characters of a host that a refusal repeats."""
+"""Characters of a host that an error quotes."""
 
 
 def is_loopback(host: str) -> bool:
-    """True for an address, or the name, that this machine alone reaches."""
+    """True for a loopback address, an IPv4-mapped one too, and for `localhost`."""
     try:
         address = ip_address(host.strip("[]"))
     except ValueError:
@@ -34,7 +34,7 @@ def is_loopback(host: str) -> bool:
 
 
 class Proxies(ProxyHeadersMiddleware):
-    """Takes from a trusted proxy what it says of its caller, and remembers that the request came through it."""
+    """Takes the caller's address and scheme from a trusted proxy's headers, and marks the request as proxied."""
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Pass the request on."""
@@ -44,13 +44,13 @@ class Proxies(ProxyHeadersMiddleware):
 
 
 class Hosts:
-    """Refuses requests for any other host than the permitted ones, whatever the port.
+    """Refuses requests for hosts that are not permitted; the port does not matter.
 
-    Where none is named, what comes over loopback and from no trusted proxy is for this machine: a page elsewhere could
-    else read and save through a name of its own that leads to 127.0.0.1.
+    If the settings name no host, a request over loopback and not from a trusted proxy must be for the local machine:
+    otherwise a page of another site could read and save through a name of its own that resolves to 127.0.0.1.
 
-    Starlette's own middleware refuses in plain text. Judged is the address that links are made of: where the Host
-    header is missing or is none, that of the server's socket.
+    Starlette's own middleware would refuse in plain text. The host checked is the one that links are made with: that of
+    the server's socket where the Host header is missing or invalid.
     """
 
     def __init__(self, app: ASGIApp, allowed: Collection[str]) -> None:
@@ -85,7 +85,7 @@ def _refusal(connection: HTTPConnection) -> Problem:
 
 
 def require_same_origin(request: Request) -> None:
-    """Raise Problem 403 for a form that a page of another site has sent. Programs send neither header."""
+    """Raise Problem 403 for a form sent by a page of another site. Programs send neither header and pass."""
     site = request.headers.get("sec-fetch-site")
     origin = request.headers.get("origin")
     if site is not None:
@@ -97,7 +97,7 @@ def require_same_origin(request: Request) -> None:
 
 
 def require_known_origin(request: Request) -> None:
-    """Raise Problem 403 for a request that a page of another site makes, unless the settings permit its origin."""
+    """Raise Problem 403 for a request from a page of another site, unless the settings permit its origin."""
     origin = request.headers.get("origin")
     if origin is None or origin in request.app.state.settings.cors_origins:
         return

@@ -1,4 +1,4 @@
-"""API keys: named, known only by their hash, compared in constant time."""
+"""API keys: each has a name; only its hash is stored, and compared in constant time."""
 
 import base64
 import binascii
@@ -15,7 +15,7 @@ Headers = Iterable[tuple[bytes, bytes]]
 
 
 def new_key(name: str) -> tuple[str, str]:
-    """A fresh key, and its pair for the settings; ValueError for a name that a pair can't hold."""
+    """New key, and its pair of name and hash for the settings; ValueError for a malformed name."""
     key = KEY_PREFIX + secrets.token_urlsafe(24)
     pair = f"{name}:{hashlib.sha256(key.encode()).hexdigest()}"
     if KEY_PAIR.fullmatch(pair) is None:
@@ -24,7 +24,7 @@ def new_key(name: str) -> tuple[str, str]:
 
 
 def holder(presented: bytes, keys: Sequence[ApiKey]) -> str | None:
-    """Name of the key that was presented, or None. Takes as long for every answer."""
+    """Name of the presented key, or None. Takes the same time for every answer."""
     digest, name = hashlib.sha256(presented).digest(), None
     for key in keys:
         if hmac.compare_digest(key.digest, digest):

@@ -1,4 +1,4 @@
-"""Kinds of problems by the name at the end of their `type`: what each means, why it arises, and what to do."""
+"""Kinds of problems by the name at the end of their `type`: meaning, cause and remedy of each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -160,4 +160,4 @@ KINDS: Mapping[str, Kind] = {
 }
 
 OF_STATUS: Mapping[int, str] = {kind.status: name for name, kind in reversed(list(KINDS.items()))}
-"""Kind of a status where nothing more is known: the first one of it."""
+"""Kind of a status where nothing more is known: the first in KINDS."""

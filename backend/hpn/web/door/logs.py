@@ -1,4 +1,4 @@
-"""Structured logs: one JSON object per line, with the request's id, and nothing of what the request asked."""
+"""Structured logs: one JSON object per line, with the request's id and without the request's content."""
 
 import logging
 import re
@@ -14,13 +14,13 @@ from structlog.typing import EventDict, FilteringBoundLogger
 
 LEVELS = {"debug": logging.DEBUG, "info": logging.INFO, "warning": logging.WARNING, "error": logging.ERROR}
 QUIET = ("alembic", "aiosqlite", "sqlalchemy", "psycopg")
-"""Libraries that log statements with their parameters, or more than anybody reads."""
+"""Libraries that log SQL with its parameters, or too much; only their warnings are kept."""
 MUTE = ("mcp",)
-"""Libraries whose lines repeat what a request asked; what goes wrong in them is raised, and logged by the service."""
+"""Libraries whose lines quote requests; their errors are raised, and logged by the service."""
 REQUEST_ID = re.compile("[A-Za-z0-9._-]{1,64}")
 
 REQUEST: ContextVar[str | None] = ContextVar("request", default=None)
-"""Id of the request that runs."""
+"""Id of the request under way."""
 
 
 def _add_request_id(logger: Any, method: str, event: EventDict) -> EventDict:
@@ -38,7 +38,7 @@ SHARED: list[Any] = [
 
 
 class Lines:
-    """Writes whole lines to standard output, wherever that leads at the time."""
+    """Writes whole lines to the current standard output."""
 
     def msg(self, line: bytes) -> None:
         """Write one line."""
@@ -49,7 +49,7 @@ class Lines:
 
 
 def make_logger(level: str) -> FilteringBoundLogger:
-    """The service's own logger."""
+    """Logger of the service itself."""
     logger: FilteringBoundLogger = structlog.wrap_logger(
         Lines(),
         processors=[*SHARED, _json],
@@ -59,7 +59,7 @@ def make_logger(level: str) -> FilteringBoundLogger:
 
 
 def configure(level: str) -> None:
-    """Write what libraries log (server, database, store) in the same form. For a process that serves, once."""
+    """Have libraries (server, database, store) log in the same format. Called once in a process that serves."""
     handler = logging.StreamHandler(sys.stdout)
     handler.setFormatter(
         structlog.stdlib.ProcessorFormatter(
@@ -85,6 +85,6 @@ def _json(logger: Any, method: str, event: EventDict) -> bytes:
 
 
 def request_id(headers: Headers) -> str:
-    """Id that the caller has given, where it is well-formed, else a random one."""
+    """Id that the caller sent if well-formed, else a random one."""
     id = headers.get("x-request-id", "")
     return id if REQUEST_ID.fullmatch(id) else secrets.token_hex(16)

@@ -1,7 +1,7 @@
 """Prometheus metrics: requests, selections by verdict, operations of the store, versions.
 
-With several workers each writes its counts to files in one folder, and whichever is asked adds all of them up: that is
-the client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MULTIPROC_DIR before it starts them.
+With several workers, each writes its counts to files in one folder, and the worker that is asked adds them all up: the
+client library's multiprocess mode, for which `serve.py` sets PROMETHEUS_MULTIPROC_DIR before it starts the workers.
 """
 
 import os
@@ -28,13 +28,13 @@ BUCKETS = (0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2
 
 
 class Build(Collector):
-    """Versions of the process that is asked, which nothing adds up."""
+    """Versions of the process that is asked; they are not added up over workers."""
 
     def __init__(self, catalogue_version: str) -> None:
         self._versions = {"engine_version": ENGINE_VERSION, "catalogue_version": catalogue_version}
 
     def collect(self) -> Iterable[InfoMetricFamily]:
-        """The one metric `hpn_build_info`, always 1."""
+        """Yield the one metric `hpn_build_info`, always 1."""
         yield InfoMetricFamily("hpn_build", "Versions of engine and catalogue.", value=self._versions)
 
 
@@ -86,7 +86,7 @@ class Metrics:
         self._store.labels(name, outcome).inc()
 
     def exposition(self) -> bytes:
-        """All counts in Prometheus' text format, those of the other workers included."""
+        """Counts of all workers in Prometheus' text format."""
         registry = self._registry
         if FOLDER in os.environ:
             registry = CollectorRegistry()
@@ -98,11 +98,11 @@ class Metrics:
 CALLERS_MISTAKES = (KeyReusedError, KeySpentError, ShareSpentError, NoRoomError, ValueError)
 
 NOT_COUNTED = frozenset({"open", "close", "require_complete"})
-"""Functions of the store that are no operation of a request."""
+"""Functions of the store that don't serve a request."""
 
 
 class CountedStore(Store):
-    """A store whose operations are counted: every public function but those of NOT_COUNTED, and of later ones, too."""
+    """Store whose operations are counted: every public function, future ones included, except those in NOT_COUNTED."""
 
     def __init__(self, metrics: Metrics, address: str, *, seconds: float, password: str | None) -> None:
         super().__init__(address, seconds=seconds, password=password)

@@ -1,4 +1,4 @@
-"""Outermost step of every request: an id, headers for its response, a line in the log, a metric."""
+"""Outermost layer of every request: an id, headers for its response, a line in the log, a metric."""
 
 import time
 from collections.abc import Mapping
@@ -13,17 +13,17 @@ from hpn.web.door.metrics import Metrics
 from hpn.web.door.problems import mistake
 
 QUIET = frozenset({"/healthz", "/readyz", "/metrics"})
-"""Routes that are asked every few seconds; seen at level debug."""
+"""Routes that are asked every few seconds; logged at level debug."""
 
 GONE = 499
-"""Status of a request whose caller left before the answer, as proxies count it."""
+"""Status by which proxies, too, count a request whose caller left before the answer."""
 
 STYLES_OF_PLOTLY = (
-    "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='",  # an empty element, whose rules its script adds
-    "'sha256-S+l+cz1wXqs2B0FcjqqT7NvjwGmhD1UjJswXjlSkj0s='",  # font-size:70%, of an index such as that of T_R
-    "'unsafe-hashes'",  # the second is of an attribute
+    "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='",  # an empty element; the library's script adds its rules
+    "'sha256-S+l+cz1wXqs2B0FcjqqT7NvjwGmhD1UjJswXjlSkj0s='",  # font-size:70%, of a subscript such as R in T_R
+    "'unsafe-hashes'",  # needed as the second is an attribute's style
 )
-"""The two inline styles there are: the plot library writes them, and has no way around either."""
+"""The only two inline styles: the plot library writes both, and can't be kept from it."""
 
 UNUSED_FEATURES = (
     "accelerometer",
@@ -50,33 +50,33 @@ UNUSED_FEATURES = (
     "usb",
     "xr-spatial-tracking",
 )
-"""Features of a browser, all off: a page of this service only writes to the clipboard."""
+"""Browser features, all switched off: a page of this service only writes to the clipboard."""
 
 SECURITY_HEADERS = {
     "Content-Security-Policy": f"default-src 'self'; style-src 'self' {' '.join(STYLES_OF_PLOTLY)}; "
     "img-src 'self' data: blob:; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
     "Cross-Origin-Opener-Policy": "same-origin",
-    # A request that CORS permits is not held to this.
+    # Requests that CORS permits are exempt.
     "Cross-Origin-Resource-Policy": "same-origin",
     "Permissions-Policy": ", ".join(f"{feature}=()" for feature in UNUSED_FEATURES),
     "Referrer-Policy": "same-origin",
     "X-Content-Type-Options": "nosniff",
 }
-"""Headers of every answer: a page loads from its own host alone, and no other content is taken for a page."""
+"""Headers of every answer: a page loads only from its own host, and browsers don't take other content for a page."""
 
 
 def add_headers(request: Request, headers: Mapping[str, str]) -> None:
-    """Have the response carry these headers, whatever it will be."""
+    """Add headers to the response, an error's included."""
     request.state.response_headers.update(headers)
 
 
 def note(request: Request, **fields: str) -> None:
-    """Have the request's line in the log say this, too."""
+    """Add fields to the request's line in the log."""
     request.scope["state"].setdefault("noted", {}).update(fields)
 
 
 class Observation:
-    """Gives each request an id, and counts and logs it. An error is logged once, and answered as a problem."""
+    """Gives each request an id, counts and logs it. An unexpected error is logged once, and answered as a problem."""
 
     def __init__(self, app: ASGIApp, logger: FilteringBoundLogger, metrics: Metrics) -> None:
         self.app = app
@@ -84,7 +84,7 @@ class Observation:
         self._metrics = metrics
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on, and note what becomes of it."""
+        """Pass the request on, and record its outcome."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -104,7 +104,7 @@ class Observation:
             await self.app(scope, receive, observed)
         except Exception:
             self._logger.exception("error", route=_route(scope), method=scope["method"])
-            # Of an answer that has begun only the end can be withheld.
+            # An answer that has begun can only be cut off.
             if status == 0:
                 await mistake().response()(scope, receive, observed)
         finally:
@@ -128,5 +128,5 @@ class Observation:
 
 
 def _route(scope: Scope) -> str:
-    """Template of the route, never the address itself: it could hold what the caller asked."""
+    """Template of the route, never the address itself: the address can contain the caller's input."""
     return getattr(scope.get("route"), "path", "none")

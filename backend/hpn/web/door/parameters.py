@@ -1,4 +1,4 @@
-"""The query of a route of the API: parameters that the route declares, each once but for lists."""
+"""Queries of the API's routes: only parameters that the route declares, each once except lists."""
 
 from collections import Counter
 from typing import get_origin
@@ -11,13 +11,13 @@ from hpn.web.door.problems import Problem
 
 MOST_PARAMETERS = 100
 MOST_NAMED = 60
-"""Characters of an unknown name that a refusal repeats."""
+"""Characters of an unknown name that an error quotes."""
 
 
 def require_declared(request: Request) -> None:
-    """Raise Problem 422 for a parameter that the matched route does not declare, or that is there twice and no list.
+    """Raise Problem 422 for a parameter that the matched route does not declare, or that is repeated and not a list.
 
-    Raises Problem 414 for so many that to name each as unknown takes long.
+    Raises Problem 414 for so many parameters that an error for each would take long.
     """
     query: bytes = request.scope["query_string"]
     if query.count(b"&") > MOST_PARAMETERS:

@@ -1,6 +1,6 @@
-"""Where work is done that would hold the event loop: pools of few workers, in which few may wait.
+"""Pools of few workers with short queues, for work that would block the event loop.
 
-A worker that computes shares the interpreter's lock with the loop, so more of them would make nothing faster.
+A worker thread shares the interpreter's lock with the loop, so more workers would make nothing faster.
 """
 
 import asyncio
@@ -28,60 +28,60 @@ PoolName = Literal["pages", "exports", "files", "batches", "metrics", "fleets"]
 
 
 class Places(NamedTuple):
-    """How many may work at once, and how many more may wait for them."""
+    """Number of workers, and of callers that may wait for one."""
 
     workers: int
     waiting: int
 
 
 PLACES: Mapping[PoolName, Places] = {
-    "pages": Places(2, sys.maxsize),  # bounded by max_conns of nginx, which calculations on the loop need, too
+    "pages": Places(2, sys.maxsize),  # bounded by nginx's max_conns, which limits calculations on the loop, too
     "exports": Places(1, 15),  # the longest report takes 300 MB, in a process beside the service
     "files": Places(1, 7),  # a hostile one keeps the others waiting for FILE_BOUNDS.seconds
     "batches": Places(1, 15),
     "metrics": Places(1, 3),
     "fleets": Places(1, 3),
 }
-"""Pages and long calculations; files that are made; files of strangers that are read; batches; what Prometheus asks;
-fleets, which are sized in processes beside the service, whose number is a setting.
+"""Pages and long calculations; files to make; strangers' files to read; batches; Prometheus' requests; fleets, sized
+in processes beside the service, whose number is a setting.
 """
 
 FILE_BOUNDS = Bounds(500_000_000, 30)
-"""Of reading a stranger's file: a workbook of 150,000 cells takes 7 s, and listing the longest fleet 400 MB."""
+"""Bounds for reading a stranger's file: a workbook of 150,000 cells takes 7 s, and listing the longest fleet 400 MB."""
 
 TOO_LARGE = N_("This file takes too much memory or time to read: save the table alone, without formats, as CSV.")
 
 SMALL_BYTES = 16 * 1024
-"""Phases up to this size are computed at once: a few milliseconds, about what a change of threads may take."""
+"""Size up to which a body is computed on the loop: a few milliseconds, about as long as a change of threads."""
 
 LONG_WORDS = (b"motion", b"tolerances", b"\\")
-"""Text in the JSON of every motion and tolerance, however it is written: two thousand turns under gravity take half a
-second, and so do thousands of points of a box."""
+"""Text in the JSON of every motion and tolerance; a backslash may hide either word as an escape. Two thousand turns
+under gravity take half a second, and so do thousands of points of a tolerance box."""
 
 RETRY_SECONDS = 2
 PATIENCE_SECONDS = 0.1
-"""Time after which somebody looks whether a client still waits."""
+"""Time after which the service begins to check that a client still waits."""
 
 logger = logging.getLogger(__name__)
 
 
 class Pool:
-    """Workers for one kind of work, and few places to wait in; nginx bounds how many of them one address has."""
+    """Workers for one kind of work, with a short queue; nginx bounds how many places one address takes."""
 
     def __init__(self, places: Places, bounds: Bounds | None = None) -> None:
         self._executor, self._callers = (ThreadPoolExecutor(places.workers) for _ in range(2))
         self._processes = [ProcessBeside(bounds) for _ in range(places.workers)]
         self.beside = self._processes[0]
-        self.turn = asyncio.Semaphore(places.workers)  # of work that is done elsewhere: as many have one at once
+        self.turn = asyncio.Semaphore(places.workers)  # of work done in the processes, one caller per worker
         self._most = places.workers + places.waiting
         self.taken = 0
 
     @contextmanager
     def place(self) -> Iterator[None]:
-        """Take a place for a while; Problem 503 where all are taken."""
+        """Hold a place; Problem 503 if all are taken."""
         if self.taken >= self._most:
-            text = f"too much of this kind is being computed; try again in {RETRY_SECONDS} s"
-            raise Problem.later(text, RETRY_SECONDS)
+            text = N_("too much of this kind is being computed; try again in {seconds} s")
+            raise Problem.later(Sentence(text, {"seconds": str(RETRY_SECONDS)}), RETRY_SECONDS)
         self.taken += 1
         try:
             yield
@@ -94,14 +94,14 @@ class Pool:
         return await asyncio.wrap_future(self._executor.submit(context.run, partial(work, *args, **kwargs)))
 
     async def call_beside(self, work: Callable[[], T]) -> T:
-        """Result of work in a process beside this one, which is killed where the caller is cancelled meanwhile.
+        """Result of work in a process beside this one, which is killed if the caller is cancelled.
 
-        For what no thread can leave before its end, and for a caller that has the pool's turn. Raises EndedError where
+        For work that a thread can't leave before its end. The caller must hold the pool's turn. Raises EndedError if
         the process ends first.
         """
         given_up = threading.Event()
         process = next((each for each in self._processes if not each.is_taken), self.beside)
-        with process.taken():
+        with process.at_work():
             try:
                 return await asyncio.wrap_future(self._callers.submit(process.call, work, given_up))
             except asyncio.CancelledError:
@@ -110,7 +110,7 @@ class Pool:
                 raise
 
     async def run_beside(self, work: Callable[[], T]) -> T:
-        """The same; raises Problem 503 where the process ends first, 413 where its work meets the pool's bounds."""
+        """Result of `call_beside`; Problem 413 if the work exceeds the pool's bounds, 503 for any other end."""
         try:
             return await self.call_beside(work)
         except EndedError as error:
@@ -128,7 +128,7 @@ class Pool:
 
 
 class Pools:
-    """The pools of one process, at `app.state.pools`."""
+    """Pools of one process, at `app.state.pools`."""
 
     def __init__(self, fleets: int = 1, fleet_bounds: Bounds | None = None) -> None:
         places = {**PLACES, "fleets": PLACES["fleets"]._replace(workers=fleets)}
@@ -145,7 +145,7 @@ class Pools:
 
 
 def pool_of(request: Request, name: PoolName) -> Pool:
-    """Pool of the application that a request has come to."""
+    """Pool of the request's application."""
     pool: Pool = request.app.state.pools[name]
     return pool
 
@@ -170,7 +170,7 @@ async def compute_beside(request: Request, name: PoolName, work: Callable[[], T]
 
 
 async def calculate(request: Request, body: bytes, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Result of work on the JSON of a body: of a few phases here and now, of what may take longer on a worker."""
+    """Result of work on a JSON body: computed on the loop for a few phases, else on a worker."""
     if len(body) <= SMALL_BYTES and not any(word in body for word in LONG_WORDS):
         return work(*args, **kwargs)
     return await compute(request, "pages", work, *args, **kwargs)
@@ -186,7 +186,7 @@ def worked(work: Callable[[Request], Response]) -> Callable[[Request], Awaitable
 
 
 async def while_present(request: Request, work: Coroutine[Any, Any, T]) -> T:
-    """Result of work, which is given up when the client leaves; the body of the request has been read."""
+    """Result of work, cancelled when the client leaves; the request's body must have been read."""
     working, leaving = asyncio.create_task(work), None
     try:
         await asyncio.wait({working}, timeout=PATIENCE_SECONDS)  # most work needs no watch
@@ -200,7 +200,7 @@ async def while_present(request: Request, work: Coroutine[Any, Any, T]) -> T:
         working.cancel()
         if leaving is not None:
             leaving.cancel()
-        await asyncio.wait({working})  # what it has started is ended, too
+        await asyncio.wait({working})  # so that processes it has called end, too
 
 
 async def _left(request: Request) -> None:

@@ -1,4 +1,4 @@
-"""Errors as RFC 9457 problem details: what was wrong, where, and what would be right."""
+"""Errors as RFC 9457 problem details: the fault, its place and the correction."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -23,19 +23,20 @@ from hpn.words.wording import Sentence
 MEDIA_TYPE = "application/problem+json"
 
 MAXIMUM_ERRORS = 20
-"""Errors that an answer names."""
+"""Maximum number of errors in an answer."""
 
 STORE_SECONDS = 5
-"""Time after which to try a store that is out of reach again."""
+"""Time to wait before a store that is out of reach is tried again."""
 
 TITLES = {status: KINDS[name].title for status, name in OF_STATUS.items()}
 
 
 class Problem(HTTPException):
-    """A refusal with its status, a text for people, and the fields it is about.
+    """Refusal with its status, a text for people, and the faulty fields.
 
-    `kind` is a name of KINDS, by default that of the status. An error without a code of its own is `invalid`. Sentences
-    say the text in any language; a page that has none shows the text.
+    `kind` is a name of KINDS, by default that of the status. An error without a code gets `invalid`. Sentences give the
+    text in any language; without them a page shows the English text. `ways` are alternative addresses for a page to
+    offer, with their names.
     """
 
     def __init__(
@@ -45,10 +46,12 @@ class Problem(HTTPException):
         errors: Iterable[tuple[Location, str] | Fault] = (),
         headers: dict[str, str] | None = None,
         kind: str = "",
+        ways: Iterable[tuple[str, str]] = (),
     ) -> None:
         self.sentences = () if isinstance(detail, str) else (detail,) if isinstance(detail, Sentence) else tuple(detail)
         detail = detail if isinstance(detail, str) else "; ".join(sentence.text for sentence in self.sentences)
         self.kind = kind or OF_STATUS.get(status, "")
+        self.ways = tuple(ways)
         self.errors = [Fault(*error) for error in errors]
         if len(self.errors) > MAXIMUM_ERRORS:
             detail += f"; {len(self.errors)} errors were found, of which the first {MAXIMUM_ERRORS} are named"
@@ -57,29 +60,29 @@ class Problem(HTTPException):
 
     @classmethod
     def later(cls, detail: str | Sentence, seconds: int, status: int = 503) -> "Problem":
-        """Problem for what may be asked again after a time."""
+        """Problem for a request that may be repeated after some seconds."""
         return cls(status, detail, headers={"Retry-After": str(seconds)})
 
     @classmethod
     def of(cls, error: ValidationError | InputError | StoreUnavailableError) -> "Problem":
-        """Problem for input that the models or the selection refuse, and for a store that is out of reach for now."""
+        """Problem for input that the models or the selection refuse, and for a store that is full or out of reach."""
         if isinstance(error, StoreUnavailableError):
             is_full = isinstance(error, StoreFullError)
             return cls.later(Sentence(str(error)) if is_full else str(error), STORE_SECONDS)
         if isinstance(error, InputError):
             return cls(422, (sentence for _, sentence in error.sentences), faults_of(error))
         if text := unreadable(error):
-            return cls(400, text.replace("Invalid JSON:", "the body is not JSON:"))
+            return cls(400, f"the body {text}")
         return cls.at(faults_of(error))
 
     @classmethod
     def at(cls, errors: list[Fault]) -> "Problem":
-        """Problem for faults of an input, of which its text has the first."""
+        """Problem for faults of an input; its text has the first three."""
         detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text, _ in errors[:3])
         return cls(422, detail, errors)
 
     def body(self) -> dict[str, Any]:
-        """The problem as a JSON object."""
+        """Problem as a JSON object."""
         body: dict[str, Any] = {
             "type": f"{PATH}{self.kind}" if self.kind else "about:blank",
             "title": KINDS[self.kind].title if self.kind else "Error",
@@ -93,12 +96,12 @@ class Problem(HTTPException):
         return body
 
     def response(self) -> Response:
-        """The problem as a response."""
+        """Problem as a response."""
         return Response(orjson.dumps(self.body()), self.status_code, self.headers, MEDIA_TYPE)
 
 
 def needs(extra: str) -> Any:
-    """Dependency of the routes that need an extra: Problem 501 where it is not installed."""
+    """Dependency of routes that need an extra: Problem 501 if it is not installed."""
 
     async def check() -> None:
         try:
@@ -115,7 +118,7 @@ def mistake() -> Problem:
 
 
 def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
-    """Methods that there are for the path of a request."""
+    """Methods that the path of a request has."""
     tried = [(method, {**scope, "method": method}) for method in ("GET", "POST", "PATCH", "DELETE")]
     methods = [
         method for method, scope in tried if any(route.matches(scope)[0] is Match.FULL for route in app.router.routes)
@@ -124,9 +127,9 @@ def _methods_at(app: FastAPI, scope: Scope) -> list[str]:
 
 
 def install(app: FastAPI, page_of: Callable[[Request, HTTPException], Response | None]) -> None:
-    """Answer every refusal of `app` as a problem; `observation.py` answers what goes wrong.
+    """Answer every refusal of `app` as a problem; `observation.py` answers unexpected errors.
 
-    `page_of` gives the page for a reader, or None where the problem says it.
+    `page_of` gives the page for a reader, or None where the problem itself is the answer.
     """
 
     async def refused(request: Request, error: Exception) -> Response:

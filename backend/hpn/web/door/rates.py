@@ -12,9 +12,9 @@ SWEEP_SECONDS = 30
 
 
 class Counters:
-    """Counts in windows of time, in a dictionary of one event loop.
+    """Counts in windows of time, in a dictionary for one event loop.
 
-    The memory of the library that reads the rates starts a thread for nearly every request.
+    The storage of the library `limits` would start a thread for nearly every request.
     """
 
     def __init__(self) -> None:
@@ -22,11 +22,11 @@ class Counters:
         self._sweep = 0.0
 
     def __len__(self) -> int:
-        """Number of subjects that are remembered."""
+        """Number of stored counts."""
         return len(self._counts)
 
     def hit(self, key: tuple[str, str], window_s: float, now: float) -> tuple[int, float]:
-        """Count, and the end of the window; a new one begins where the last has ended."""
+        """Count this hit; return the count and end of the key's window. A new window begins when the last has ended."""
         if now > self._sweep:
             self._counts = {name: entry for name, entry in self._counts.items() if entry[1] > now}
             self._sweep = now + SWEEP_SECONDS
@@ -38,7 +38,7 @@ class Counters:
 
 
 class Admission(NamedTuple):
-    """True for a request that may pass, and response headers that say how many more may."""
+    """Decision on a request: whether it may pass, headers with the rest of the limit, seconds to wait, the rate."""
 
     granted: bool
     headers: Mapping[str, str]
@@ -47,14 +47,14 @@ class Admission(NamedTuple):
 
 
 class Limiter:
-    """Holds each subject, a key or an address, to the rate of its kind of request: so many in each window of time."""
+    """Limits each subject (key or address) to a number of requests of a kind in each window of time."""
 
     def __init__(self, rates: dict[str, str]) -> None:
         self._rates = {name: limits.parse(rate) for name, rate in rates.items() if rate != "off"}
         self._counters = Counters()
 
     def admit(self, name: str, subject: str) -> Admission | None:
-        """Count a request; None where there is no limit."""
+        """Count a request and decide on it; None where there is no limit."""
         rate = self._rates.get(name)
         if rate is None:
             return None
@@ -69,7 +69,7 @@ class Limiter:
 
 
 def subject_of(address: str) -> str:
-    """Caller behind an address: the address itself, or with IPv6 its /64 network, as one customer has that many."""
+    """Caller of an address: the address itself, for IPv6 its /64 network, as one customer has that many addresses."""
     try:
         parsed = ipaddress.ip_address(address)
     except ValueError:

@@ -1,6 +1,6 @@
-"""The reader behind a request: language and units from cookies and browser, and the form that changes them.
+"""Reader of a page: language and units from cookies and browser, and the form that changes them.
 
-An address never says anything about its reader, so that a shared link shows each reader their own language and units.
+Addresses contain nothing about the reader, so a shared link shows each reader their own language and units.
 """
 
 from urllib.parse import quote
@@ -20,25 +20,25 @@ from hpn.words import units
 from hpn.words.reader import LANGUAGES, Reader
 
 LANGUAGE, UNITS = "hpn_language", "hpn_units"
-"""Cookies; what they hold is no secret and names nobody."""
+"""Cookies; their values are neither secret nor personal."""
 
 POSTED_TO_ITSELF = ("/machines", "/paste")
-"""Pages whose form is posted to their own address."""
+"""Pages with a form that is posted to the page's own address."""
 
 YEAR_S = 365 * 24 * 3600
 MAXIMUM_BYTES = 70_000
-"""A form of settings carries the address that it leads back to."""
+"""Maximum size of a form of settings, which carries the address that it leads back to."""
 
 
 class Readers:
-    """Finds out who reads a page, and tells caches that this makes a difference."""
+    """Sets the reader of each request, and tells caches that pages depend on it."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass the request on with its reader set, and without cookies: nothing else needs them, and the framework
-        takes time by the square of a quoted one.
+        """Pass the request on with its reader and without cookies: nothing else needs them, and the framework's time
+        for a quoted cookie grows with the square of its length.
         """
         if scope["type"] != "http":
             await self.app(scope, receive, send)
@@ -66,7 +66,7 @@ class Readers:
 
 
 def reader_from(headers: Headers) -> Reader:
-    """Reader by cookies, else by the language of the browser, else English; in SI units at first."""
+    """Reader by cookies; by default the browser's language, or English, and SI units."""
     cookies = _cookies(headers.get("cookie", ""))
     language = cookies.get(LANGUAGE, "")
     if language not in LANGUAGES:
@@ -75,7 +75,7 @@ def reader_from(headers: Headers) -> Reader:
 
 
 def accepted_language(header: str) -> str:
-    """Best of LANGUAGES by an Accept-Language header; English where none fits."""
+    """Best of LANGUAGES for an Accept-Language header; English if none fits."""
     weighted = []
     for place, part in enumerate(header[:500].split(",")):
         tag, _, parameter = part.partition(";")
@@ -87,7 +87,7 @@ def accepted_language(header: str) -> str:
 
 
 def _cookies(header: str) -> dict[str, str]:
-    # Not with a library: the one at hand takes time by the square of a quoted value, and ours need no quotes.
+    # No library: the time of Starlette's parser grows with the square of a quoted value, and our values need no quotes.
     pairs = (part.partition("=") for part in header[:8000].split(";"))
     return {name.strip(): value.strip() for name, _, value in pairs}
 
@@ -100,7 +100,7 @@ def _address(scope: Scope) -> str:
 
 
 async def change(request: Request) -> Response:
-    """Keep a language, units or both, and go back to where the reader was."""
+    """Keep a language, units or both in cookies, and redirect to the page that the reader came from."""
     require_same_origin(request)
     body = await read_body(request, FORM, maximum_bytes=MAXIMUM_BYTES)
     fields = dict(pairs_of(body))
@@ -121,7 +121,7 @@ def _keep(request: Request, response: Response, name: str, value: str) -> None:
 
 
 def _own(address: str) -> str:
-    """An address on this host, or the first page: a form must lead nobody elsewhere."""
+    """Address if it is on this host, else the first page: a form must not lead to another site."""
     safe = address.isascii() and address.isprintable() and "\\" not in address
     return address if safe and address.startswith("/") and not address.startswith("//") else "/"
 

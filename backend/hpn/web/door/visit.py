@@ -1,4 +1,4 @@
-"""The request under way: its reader, and the address of the page that they look at."""
+"""Reader of the request under way, and address of their page."""
 
 from contextvars import ContextVar
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from hpn.words.reader import DEFAULT, Reader
 
 
 class Visit(NamedTuple):
-    """A reader, and the path and query of the page that they look at."""
+    """Reader, and path and query of their page."""
 
     reader: Reader = DEFAULT
     address: str = "/"
@@ -17,12 +17,12 @@ class Visit(NamedTuple):
 
 NOBODY = Visit()
 
-# Per request, not per process: templates of every page find it without each route handing it on.
+# Set per request: templates find it without each route passing it on.
 VISIT: ContextVar[Visit] = ContextVar("visit", default=NOBODY)
 
 
 def absolute(request: Request, path: str) -> str:
-    """Address of this service with a path."""
+    """Absolute address of a path of this service."""
     return str(request.base_url).rstrip("/") + path
 
 
@@ -32,5 +32,5 @@ def current() -> Reader:
 
 
 def address() -> str:
-    """Path and query of the request under way, or of the form's page where it was posted."""
+    """Path and query of the request under way; after a posted form that of its page, or `/`."""
     return VISIT.get().address

@@ -1,4 +1,4 @@
-"""Buttons of the form that edit what is given, played on it one after the other."""
+"""Buttons that edit the form's content, applied to its query one after the other."""
 
 import re
 from collections.abc import Callable
@@ -6,19 +6,19 @@ from collections.abc import Callable
 from hpn.application import Application
 from hpn.links.rows import OPTIONAL
 from hpn.web.form import helpers, offers, ramps, ways
-from hpn.web.form.given import REVERSES, SortedQuery
+from hpn.web.form.query import REVERSES, SortedQuery
 
 MOST_PRESSES = 50
 
 Reads = Callable[[SortedQuery], Application | None]
-"""Reading of what is given; None where it describes no application."""
+"""Function from a query to its application; None if the query describes none."""
 
 
 def play(query: SortedQuery, application_of: Reads) -> str | None:
-    """Play the buttons that were pressed; the element to go on from, if there is one."""
+    """Apply the pressed buttons to a query; id of the element to focus, or None."""
     example = Application.worked_example()
     if any(press.startswith("way:") for press in query.presses) and application_of(query) == example:
-        query.keep_cycle()  # nobody has given the rest
+        query.keep_cycle()  # the rest is the example's, not the reader's
     focus = None
     for press in query.presses[:MOST_PRESSES]:
         do, _, what = press.partition(":")
@@ -27,7 +27,7 @@ def play(query: SortedQuery, application_of: Reads) -> str | None:
 
 
 def _press(query: SortedQuery, do: str, what: str, application_of: Reads) -> str | None:
-    """Play one button, which may say what or which row it is for; the element to go on from."""
+    """Apply one button, with its argument or row number in `what`; id of the element to focus."""
     focus: str | None = do
     match do:
         case _ if do in _SETS:
@@ -67,4 +67,4 @@ _SETS = {
     "linear": ("bm", ""),
     "by_L10": ("Lbb", "L10"),
 }
-"""Buttons that give a single value."""
+"""Buttons that set a single value."""

@@ -1,4 +1,4 @@
-"""Values of a machine that may be common, as a form shows and sends them."""
+"""Common values of a machine, as a form shows and sends them."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -14,7 +14,7 @@ from hpn.links.symbols import BY_PATH, BY_SIZE
 from hpn.links.tolerances import path_of, sides_of, symbol_of, text_of
 from hpn.tables.numbers import WAS, WRITTEN, read_value
 from hpn.web.form.form import Form, for_reader
-from hpn.web.form.given import FieldProblem, SortedQuery
+from hpn.web.form.query import FieldProblem, SortedQuery
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.tolerance_fields import COLUMN, INPUT_OF, OF_COLUMN, OFFERED
 from hpn.words.reader import Reader
@@ -41,17 +41,17 @@ OF_TOLERANCE: Mapping[str, str] = {
     and (path := path_of(name, None, None)) is not None
     and is_common(f"{TOLERANCE}{path}")
 }
-"""Fields of the form for tolerances, and their paths; one of a single phase or move keeps what it is."""
+"""Fields of the form for tolerances, and their paths; tolerances of a single phase or move can't be common."""
 
 FIRST_TOLERANCES = tuple(f"{COLUMN}{name}" for name in ("T", "n", "t", "FR", "FA", "Tk", "tp", "JL"))
-"""Those that nearly every machine with tolerances has."""
+"""Fields that nearly every machine with tolerances has."""
 
 PATHS: Mapping[str, str] = {name: path for name, (path, _) in BY_SYMBOL.items()} | dict(OF_TOLERANCE)
 """Paths of all fields by their names."""
 
 
 def form_of(values: Values, reader: Reader, *, has_tolerances: bool = False) -> Form:
-    """Form with some values, with a field for each tolerance or without."""
+    """Form that shows values; with fields for tolerances if `has_tolerances`."""
     texts = {name: _text(values[path]) for name, (path, s) in BY_SYMBOL.items() if not s.many and path in values}
     texts |= tolerance_texts(values) if has_tolerances else {}
     lists = {
@@ -61,7 +61,7 @@ def form_of(values: Values, reader: Reader, *, has_tolerances: bool = False) -> 
 
 
 def tolerance_texts(values: Values) -> dict[str, str]:
-    """Tolerances as links have them, by the names of their fields."""
+    """Tolerances as links write them, by the names of their fields."""
     return {
         field: sides_of(text_of(path.removeprefix(TOLERANCE), Tolerance.model_validate(values[path])).partition(":")[2])
         for field, path in OF_TOLERANCE.items()
@@ -76,18 +76,18 @@ def _text(value: Any) -> str:
 
 
 def read(pairs: Sequence[tuple[str, str]], names: Sequence[str], reader: Reader) -> tuple[Form, Values]:
-    """Form as it was sent, with its problems, and the values in it by path; a blank field is none."""
+    """Form as sent, with its problems, and its values by path; a blank field has no value."""
     entries = SortedQuery([pair for pair in pairs if pair[0] in (*names, WRITTEN, WAS)])
     values = dict[str, Any]()
     problems: list[FieldProblem] = []
     several = [(name, text) for name, texts in entries.lists.items() for text in texts]
     for name, text in (*entries.scalars.items(), *several):
         if name in OF_TOLERANCE:
-            said = tolerances.read(INPUT_OF[name], None, sides_of(text), None)
-            if isinstance(said, Sentence):
-                problems.append(FieldProblem(name, None, said))
+            tolerance = tolerances.read(INPUT_OF[name], None, sides_of(text), None)
+            if isinstance(tolerance, Sentence):
+                problems.append(FieldProblem(name, None, tolerance))
             else:
-                values[OF_TOLERANCE[name]] = said[1]
+                values[OF_TOLERANCE[name]] = tolerance[1]
             continue
         path, symbol = BY_SYMBOL[name]
         value = read_value(text, symbol.kind, mostly_whole=symbol.unit == "h")
@@ -113,7 +113,7 @@ def read(pairs: Sequence[tuple[str, str]], names: Sequence[str], reader: Reader)
 
 
 def _refused(values: Values) -> list[FieldProblem]:
-    """Problems of values that the models refuse."""
+    """Problems of the values that the models refuse."""
     try:
         Common.model_validate(nested(values))
     except ValidationError as error:
@@ -140,7 +140,7 @@ def nested(values: Values) -> Json:
 
 
 def changed(before: Values, after: Values) -> dict[str, Any]:
-    """Values that differ, by path, None for one that is taken away; a choice that is left at its default is none."""
+    """Changed values by path, None for a removed one; a choice left at its default does not count as changed."""
     values: dict[str, Any] = {}
     defaults = {path: next(iter(symbol.choices), None) for path, symbol in BY_SYMBOL.values()}
     for path in PATHS.values():

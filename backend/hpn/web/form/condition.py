@@ -1,6 +1,6 @@
-"""Condition of a gear's envelope as a reader types it on the page of the gear: speed, life and load coefficient.
+"""Condition of a gear's envelope, typed on the page of the gear: speed, life and load coefficient.
 
-Nothing else is asked: what the shaft may carry needs no torque and no load.
+The permitted load of the shaft depends on no other input, neither on torque nor on load.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,8 +11,8 @@ from pydantic import ValidationError
 
 from hpn.engine.envelopes import EnvelopeQuery
 from hpn.tables import numbers
-from hpn.web.form.given import CONDITION
 from hpn.web.form.linked import WRITTEN_AT
+from hpn.web.form.query import CONDITION
 from hpn.web.form.refusals import refusal_of
 from hpn.words.quantities import DUTY, INPUTS
 from hpn.words.reader import Reader
@@ -32,7 +32,7 @@ _UNITS = {name: suffix_of(field) for name, field in FIELDS.items()}
 
 @dataclass(frozen=True, slots=True)
 class ConditionField:
-    """One input of the condition: what stands in it, what counts while it is blank, and what is wrong with it."""
+    """Input of the condition: its text, the default that counts while it is blank, and its problem."""
 
     name: str
     named: Named
@@ -44,7 +44,7 @@ class ConditionField:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Condition that was typed; `query` is the default where something is wrong."""
+    """Condition as typed; `query` is the default if an input has a problem."""
 
     fields: tuple[ConditionField, ...]
     query: EnvelopeQuery
@@ -52,13 +52,13 @@ class Condition:
 
     @property
     def tail(self) -> str:
-        """The typed condition as the end of an address, in the units of links."""
+        """Typed condition as the end of an address, in the units of links."""
         typed = [field.name for field in self.fields if field.text.strip() and not field.problem]
         return "".join(f"&{name}={getattr(self.query, FIELDS[name]):.12g}" for name in typed)
 
 
 def condition_of(pairs: Sequence[tuple[str, str]], reader: Reader, default: EnvelopeQuery) -> Condition:
-    """Condition in the query of an address; what is blank is as in the default."""
+    """Condition in the query of an address; blank inputs take the default's values."""
     texts = dict(pairs)
     notation = numbers.Notation({numbers.WRITTEN: texts.get(WRITTEN_AT, "")})
     entries = [(name, notation.entry(texts.get(name, ""), _UNITS[name])) for name in FIELDS]
@@ -81,7 +81,7 @@ def condition_of(pairs: Sequence[tuple[str, str]], reader: Reader, default: Enve
 
 
 def _query(values: Mapping[str, Any], default: EnvelopeQuery, problems: dict[str, Sentence]) -> EnvelopeQuery | None:
-    """Query with some values in place of the default's; None where one is refused, which is added to the problems."""
+    """Default query with some values replaced; None if the model refuses one, with its problem added to `problems`."""
     names = {field: name for name, field in FIELDS.items()}
     try:
         return EnvelopeQuery.model_validate({**default.model_dump(), **values})

@@ -1,4 +1,4 @@
-"""The form: what a query gives, field by field, and the application that it describes."""
+"""Form: the content of a query, field by field, and the application that it describes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,9 +13,11 @@ from hpn.links.symbols import MECHANISM_SYMBOLS, mechanism_symbols, units_of
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables import numbers
 from hpn.tables.by_size import BySize
+from hpn.tables.curve_text import CurveText
 from hpn.tables.inputs import NAME
-from hpn.web.form.given import FieldProblem
 from hpn.web.form.helpers import BodyTable
+from hpn.web.form.query import FieldProblem
+from hpn.web.form.refusals import MISSING
 from hpn.web.form.tolerance_fields import COLUMN, INPUT_OF, OF_ROW, OFFERED, ROW, entries_of, field_of
 from hpn.web.form.ways import START
 from hpn.words.reader import Reader
@@ -26,17 +28,17 @@ WHEELS = ("rack_and_pinion", "belt")
 """Mechanisms whose pinion or pulley may sit on the gear's shaft."""
 
 LONGEST_ASIDE = 8_000
-"""Characters of what was typed another way that still fit an address."""
+"""Characters of inputs of other ways to give the cycle that still fit into an address."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """A query as given, and the application it describes, or why it describes none.
+    """Content of a query, and the application that it describes, or the problems that keep it from describing one.
 
-    Of a motion the mechanism stands in `texts`, and `moves` has a row per move; `bodies` are what its moment of inertia
-    may be worked out from. `tolerances` are those of a link that have no field of their own; those in fields do not
-    count in a form that `is_exact`. `asides` are the inputs of other ways to give the cycle.
-    `sized` are the numbers by size of an input, as a reader sees them.
+    A motion has its mechanism in `texts` and a row per move in `moves`; its moment of inertia may be calculated from
+    `bodies`. `tolerances` are the tolerances of a link that have no field; with `is_exact` those in fields don't count.
+    `asides` are the inputs of other ways to give the cycle.
+    `sized` holds an input's numbers by size, in the reader's notation.
     `written` is the marker of the language and units in which a form was filled in; None for a link.
     """
 
@@ -65,39 +67,39 @@ class Form:
 
     @property
     def as_text(self) -> bool:
-        """True where the duty cycle is edited as text instead of in a table."""
+        """True if the duty cycle is edited as text instead of in a table."""
         return len(self.rows) > ROWS_IN_TABLE
 
     @property
     def long(self) -> bool:
-        """True where the form is posted, since it may be too long for an address."""
+        """True if the form is posted, as it may be too long for an address."""
         return self.as_text or self.moves_are_hidden or sum(map(len, self.asides)) > LONGEST_ASIDE
 
     @property
     def moves_are_hidden(self) -> bool:
-        """True where there are more moves than the page has fields for."""
+        """True if there are more moves than the page has fields for."""
         return len(self.moves) > ROWS_IN_TABLE
 
     @property
     def has_both(self) -> bool:
-        """True where phases are given beside a motion, which is refused."""
+        """True if both phases and a motion are given, which is an error."""
         return self.has_motion and any(map(filled, self.rows))
 
     @property
     def mechanism(self) -> str:
-        """Kind of mechanism that moves."""
+        """Type of the mechanism; the first of TYPES where the form has none."""
         code = self.texts.get("mech", "").strip()
         return code if code in TYPES else TYPES[0]
 
     @property
     def mechanism_symbols(self) -> tuple[Symbol, ...]:
-        """Inputs of the mechanism: its own, and any other that is given, which is refused where it stands."""
+        """Inputs of the mechanism, plus given inputs of other mechanisms: their errors are shown beside them."""
         own = mechanism_symbols(self.mechanism)
         names = {"mech", *(symbol.name for symbol in own)}
         return (*own, *(symbol for symbol in MECHANISM_SYMBOLS if symbol.name in self.texts.keys() - names))
 
     def shows(self, name: str) -> bool:
-        """True for an input that the cycle leaves open, or that is given, which is refused where it stands."""
+        """True for an input that the cycle leaves open, and for any given input: its error is shown beside it."""
         if name in self.texts or not self.has_motion:
             return name in self.texts or name != "fm"
         own = {"hx": "rack_and_pinion", "kb": "belt"}.get(name, self.mechanism)
@@ -114,22 +116,27 @@ class Form:
         return table_columns(move_symbols(self.mechanism), self.shown)
 
     def row(self, problem: FieldProblem) -> str:
-        """Number of the row that a problem is in, with its name where it has one."""
+        """Number of a problem's row, with the row's name if it has one."""
         at = problem.index or 0
         rows = self.moves if self.has_motion and not self.has_both else self.rows
         return numbered(at, rows[at].get(NAME.role, "").strip() if at < len(rows) else "")
 
     @property
     def text(self) -> str:
-        """The duty cycle as text, one phase per line: as typed, if it was."""
+        """Duty cycle as text, one phase per line; as typed if it was typed as text."""
         columns = PHASE_SYMBOLS[: next((width for group, width in WIDTHS.items() if group in self.shown), 3)]
         lines = ("\t".join(row.get(symbol.name, "") for symbol in columns) for row in self.rows)
         return "\n".join(lines) if self.typed is None else self.typed
 
     @property
     def empty(self) -> bool:
-        """Nobody has filled in a phase yet: neither an application nor an error."""
+        """True if no phase is filled in yet: neither an application nor a problem."""
         return self.application is None and not self.problems
+
+    @property
+    def only_lacks(self) -> bool:
+        """True if missing inputs are the only problems."""
+        return bool(self.problems) and all(problem.message.template == MISSING for problem in self.problems)
 
     def offers_tolerance(self, name: str) -> bool:
         """True for an input with a field for its tolerance."""
@@ -137,33 +144,33 @@ class Form:
 
     @property
     def in_sheet(self) -> tuple[str, ...]:
-        """Names of the fields above and below the rows of the table."""
+        """Names of the table's fields outside its rows."""
         columns = self.move_columns if self.has_motion else self.columns
         return ("tp", f"{COLUMN}tp", *(f"{COLUMN}{symbol.name}" for symbol in columns))
 
     @staticmethod
     def tolerances_of(names: Sequence[str]) -> list[str]:
-        """Fields of the tolerances of a row's cells."""
+        """Names of the tolerance fields of a row's cells."""
         return [f"{ROW}{name}" for name in names if f"{ROW}{name}" in OF_ROW]
 
     @property
     def asks_of_worst(self) -> bool:
-        """True where something is asked of the worst case."""
+        """True if the form has a requirement for the worst case."""
         names = ("uw", "ot")
         return any(name in self.texts for name in names) or any(each.name in names for each in self.problems)
 
     def says_tolerance(self, name: str) -> bool:
-        """True for an input that has a tolerance of its own or for all rows, or a wrong one."""
+        """True for an input that has a tolerance of its own or for all rows, valid or not."""
         field = f"{COLUMN}{name}"
         return field in self.texts or any(problem.name == field for problem in self.problems)
 
     def messages(self, name: str, index: int | None = None) -> list[Sentence]:
-        """Messages on one input."""
+        """Messages for one input."""
         return [problem.message for problem in self.problems if (problem.name, problem.index) == (name, index)]
 
 
 def address_of_empty(form: Form) -> str:
-    """Address of a form without a phase, with all else that it says."""
+    """Address of a form without a phase but with its other inputs."""
     lists = [(name, text) for name, texts in form.lists.items() for text in texts]
     lists += [(TOLERANCE, text) for text in form.tolerances]
     entries = [(name, text) for name, text in (*form.texts.items(), *lists) if text.strip() and name != "mech"]
@@ -172,13 +179,15 @@ def address_of_empty(form: Form) -> str:
 
 
 def for_reader(form: Form, reader: Reader) -> Form:
-    """The same form with what the reader's fields show: their units and decimal mark."""
+    """Form with its texts in the reader's units and with their decimal mark."""
     units = units_of(form.texts.get("mech", "").strip())
     sized = {name: text for name, text in form.texts.items() if isinstance(text, BySize)}
-    single = {name: text for name, text in form.texts.items() if name not in sized}
+    curves = {name: text for name, text in form.texts.items() if isinstance(text, CurveText)}
+    single = {name: text for name, text in form.texts.items() if name not in (*sized, *curves)}
     tables = (*form.rows, *form.moves, *form.bodies.rows, single)
     cells = [(text, units[name]) for table in tables for name, text in table.items() if name in units]
     cells += [(part.number, units[name]) for name, text in sized.items() for part in text.parts]
+    cells += [cell for text in curves.values() for cell in text.cells]
     parted = [pair for table in (*form.rows, *form.moves, single) for pair in table.items() if pair[0] in INPUT_OF]
     cells += [cell for name, text in parted for cell in entries_of(name, text, units)]
     entries = numbers.to_fields(cells, reader, form.written)
@@ -188,7 +197,8 @@ def for_reader(form: Form, reader: Reader) -> Form:
         for part in (form.rows, form.moves, form.bodies.rows, (single,))
     )
     by_size = {name: tuple((part.place, next(texts)) for part in text.parts) for name, text in sized.items()}
-    named |= {name: text.shown([number for _, number in by_size[name]], reader) for name, text in sized.items()}
+    named |= {name: text.for_field([number for _, number in by_size[name]], reader) for name, text in sized.items()}
+    named |= {name: text.over(lambda *_: next(texts)).for_field for name, text in curves.items()}
     fields = iter([field_of(name, text, texts, units, reader) for name, text in parted])
     rows, moves, (named,) = (
         tuple({name: next(fields) if name in INPUT_OF else text for name, text in table.items()} for table in part)

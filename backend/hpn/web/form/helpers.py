@@ -1,6 +1,6 @@
-"""Helper of the form: the moment of inertia of bodies, from what somebody knows of them.
+"""Helper of the form: moment of inertia of bodies from their masses and dimensions.
 
-It belongs to the page alone: a link has the figures that come out.
+It exists only on the page: a link contains the resulting figures.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,19 +14,19 @@ from hpn.links.rows import filled
 from hpn.links.symbol import Symbol
 from hpn.physics.motion.bodies import Body, BodySum, sum_of
 from hpn.tables.numbers import read_value
-from hpn.web.form.given import FieldProblem, SortedQuery
+from hpn.web.form.query import FieldProblem, SortedQuery
 from hpn.web.form.refusals import refusal_of
 from hpn.words.wording import Sentence
 
 DIGITS = 6
-"""Digits of the figures that are handed over."""
+"""Significant digits of the figures that the form takes over."""
 
 M = TypeVar("M", bound=BaseModel)
 
 
 @dataclass(frozen=True)
 class BodyTable:
-    """Rows of bodies as given, what is wrong with them, and what they come to; None where that is nothing."""
+    """Rows of bodies as given, their problems, and their sum; None if there are no bodies or a row has a problem."""
 
     rows: tuple[Mapping[str, str], ...] = ()
     problems: tuple[FieldProblem, ...] = ()
@@ -34,12 +34,12 @@ class BodyTable:
 
     @property
     def given(self) -> bool:
-        """True where anything is filled in."""
+        """True if a row is filled in."""
         return any(map(filled, self.rows))
 
 
 def body_table(rows: Sequence[Mapping[str, str]]) -> BodyTable:
-    """Bodies of rows; blank ones count as absent."""
+    """Table of the bodies in rows; blank rows count as absent."""
     problems: list[FieldProblem] = []
     bodies = [_model(Body, row, BODY_BY_NAME, k, problems) for k, row in enumerate(rows) if filled(row)]
     whole = [body for body in bodies if body is not None]
@@ -53,7 +53,7 @@ def _model(
     index: int | None,
     problems: list[FieldProblem],
 ) -> M | None:
-    """Model of texts by name; None where one can't be read or is refused, which is added to the problems."""
+    """Model of texts by name; None if a text can't be read or is refused, and its problem is added to `problems`."""
     values = {name: read_value(text, symbols[name].kind) for name, text in filled(texts).items()}
     unread = [FieldProblem(name, index, value) for name, value in values.items() if isinstance(value, Sentence)]
     if unread:
@@ -69,7 +69,7 @@ def _model(
 
 
 def hand_over(query: SortedQuery, *, gravity: bool) -> None:
-    """Take what the bodies come to as the mechanism's inertia, and as its gravity too."""
+    """Put the bodies' sum into the mechanism's inertia, with `gravity` also into the gravity inputs of a rotary one."""
     total = body_table(query.bodies.rows).sum
     if total is None:
         return

@@ -1,7 +1,7 @@
-"""Links and the form: from the symbols of a query to the application model.
+"""Reading of links and the form: from the symbols of a query to the application model.
 
-The form, the address bar and every link that somebody writes by hand go through `parse`; `links.writer.to_link` is the
-way back. Names are the handbook's symbols, values are in the units of the API.
+The form, the address bar and links written by hand all go through `parse`; `links.writer.to_link` is the inverse.
+Names are the handbook's symbols, values are in the units of the API.
 """
 
 import re
@@ -12,37 +12,38 @@ from typing import Any
 from msgspec.structs import replace as with_values
 from pydantic import ValidationError
 
-from hpn.application import Application
+from hpn.application import Application, CurvePoint
 from hpn.links import tolerances
 from hpn.links.labels import LABELS
 from hpn.links.row_symbols import MOVE_BY_LEAF, PHASE_BY_LEAF, PHASE_BY_NAME, move_symbols
 from hpn.links.rows import TOLERANCE, filled
 from hpn.links.symbol import MOTION_PATH, Symbol
-from hpn.links.symbols import BY_NAME, BY_PATH, BY_SIZE
+from hpn.links.symbols import BY_NAME, BY_PATH, BY_SIZE, CURVES, MERGED
 from hpn.physics.motion.mechanisms import TYPES
 from hpn.tables.by_size import BySize, by_size
+from hpn.tables.curve_text import CurveText, curve_text
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import read_value
 from hpn.web.form.beside import with_beside
 from hpn.web.form.buttons import play
 from hpn.web.form.form import Form
-from hpn.web.form.given import CONDITION, REQUIRED, FieldProblem, Pairs, SortedQuery
 from hpn.web.form.helpers import BodyTable, body_table
+from hpn.web.form.query import CONDITION, REQUIRED, FieldProblem, Pairs, SortedQuery
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.tolerance_fields import COLUMN, OF_COLUMN, OF_ROW, ROW, fields
 from hpn.words.designations import OTHERS
 from hpn.words.terms import FOR_OTHERS
 from hpn.words.titles import LONGEST_NAME, faults_of
-from hpn.words.wording import N_, Sentence, Typed
+from hpn.words.wording import N_, Sentence, Typed, Value
 
 _OF_TWO_PHASES = re.compile(r"([1-9][0-9]{1,4}),([1-9][0-9]{1,4})")
-"""Two values as likely as a number with decimals: `40,32`, which `9,3` is not."""
+"""Text that is as likely two values as a number with decimals: `40,32`, but not `9,3`."""
 
 _SEVERAL = re.compile(r"(?![0-9]+,0+$)[0-9]{1,5}([\s,;/]+[0-9]{1,5}){1,10}")
-"""Several whole numbers in one text; `5,0` is one."""
+"""Several whole numbers in one text; `5,0` is a single number."""
 
 _VALUES = re.compile(r"(?![0-9]{1,2}(?:,[0-9]{3})+$)[+-]?[0-9]{1,6}(?:[,;] ?[+-]?[0-9]{1,6}){2,10}")
-"""Several whole numbers in the field of one phase: `250,500,250`, but `1,234,567` is rather one."""
+"""Several whole numbers in the field of one phase: `250,500,250`; `1,234,567` is more likely one number."""
 
 # Inputs beside which an error of a whole part of the model is shown.
 _PARTS = {
@@ -56,19 +57,22 @@ _PARTS = {
     ("emergency_stop", "brake"): "TB",
 }
 
+NAMES = (NAME.role, BY_PATH["requirements", "motor", "name"].name)
+"""Inputs whose text is a name."""
+
 _TABLES = (
     (("duty_cycle", "phases"), PHASE_BY_LEAF, "T"),
     ((*MOTION_PATH, "moves"), MOVE_BY_LEAF, "mv"),
 )
-"""Tables of the model, their inputs by field, and the input beside which any other error of a row is shown."""
+"""Tables of the model, their inputs by field, and the input beside which other errors of a row are shown."""
 
 
 Completes = Callable[[dict[str, Any]], dict[str, Any]]
-"""The whole of an application, as JSON, of which a query gives a part."""
+"""Function that completes the part of an application that a query gives; both are JSON."""
 
 
 def parse(pairs: Pairs, whole: Completes = dict) -> Form:
-    """Form of a query, with everything that the query says and a message for each wrong field."""
+    """Form of a query, with its whole content and a message for each wrong field."""
     query = SortedQuery(with_beside(pairs))
     focus = play(query, lambda sorted_pairs: _application_of(sorted_pairs, whole)[0])
     application, problems = _application_of(query, whole)
@@ -98,7 +102,7 @@ def parse(pairs: Pairs, whole: Completes = dict) -> Form:
 
 
 def _application_of(query: SortedQuery, whole: Completes) -> tuple[Application | None, list[FieldProblem]]:
-    """Application that is given, or a message for each wrong field; neither where the form is still blank."""
+    """Application of a query, or a message for each wrong field; neither if the form is still blank."""
     problems = [*query.problems(), *_list_problems(query)]
     document, unread = _document(query)
     places: dict[str, FieldProblem] = {}
@@ -123,7 +127,7 @@ def _list_problems(query: SortedQuery) -> Iterable[FieldProblem]:
 
 
 def _untouched(query: SortedQuery) -> bool:
-    """The form was sent with its duty table still blank, but for the profile that a move begins with."""
+    """True for a form whose duty table is still blank, except for the profile that a new move has."""
     columns = query.duty.counts
     begun = {"mv"} if "mt" in columns else set()
     if any(map(filled, query.phases.rows)):
@@ -135,7 +139,7 @@ def _untouched(query: SortedQuery) -> bool:
 
 
 def _document(query: SortedQuery) -> tuple[dict[str, Any], list[FieldProblem]]:
-    """Nested input of the application model; what can't be read is left out and reported."""
+    """Nested input of the application model, and a problem for each text that can't be read and is left out."""
     problems: list[FieldProblem] = []
     cycle: dict[str, Any] = {}
     if query.has_motion:
@@ -154,6 +158,10 @@ def _document(query: SortedQuery) -> tuple[dict[str, Any], list[FieldProblem]]:
         if name in BY_SIZE:
             document.setdefault(symbol.path[0], {})[symbol.path[1]] = _numbers_by_size(name, by_size(text), problems)
             continue
+        if name in CURVES:
+            motor = document.setdefault(symbol.path[0], {}).setdefault(symbol.path[1], {})
+            motor[symbol.path[2]] = _points(name, curve_text(text), problems)
+            continue
         _put(document, symbol.path, symbol, text, FieldProblem(name, None, Sentence("")), problems)
     for name, texts in query.lists.items():
         values = [value for text in texts if not isinstance(value := read_value(text, BY_NAME[name].kind), Sentence)]
@@ -162,7 +170,7 @@ def _document(query: SortedQuery) -> tuple[dict[str, Any], list[FieldProblem]]:
 
 
 def _tolerances(query: SortedQuery, document: dict[str, Any], places: dict[str, FieldProblem]) -> list[FieldProblem]:
-    """Set tolerances into a document, and the field of each by its path; what is wrong with them."""
+    """Put tolerances into a document, and their fields by path into `places`; return the problems of wrong ones."""
     if query.is_exact:
         return []
     mechanism = query.scalars.get("mech", "").strip() if query.has_motion else None
@@ -175,27 +183,29 @@ def _tolerances(query: SortedQuery, document: dict[str, Any], places: dict[str, 
         for k, text in enumerate(query.tolerances)
     ]
     problems, values = [], {}
-    for place, said in faults:
-        if isinstance(said, Sentence):
-            problems.append(replace(place, message=said))
-        elif said[0] in values:
-            symbol = tolerances.symbol_of(said[0])
+    for place, fault in faults:
+        if isinstance(fault, Sentence):
+            problems.append(replace(place, message=fault))
+        elif fault[0] in values:
+            symbol = tolerances.symbol_of(fault[0])
             problems.append(replace(place, message=Sentence(tolerances.TWICE, {"symbol": symbol})))
         else:
-            values[said[0]], places[said[0]] = said[1], place
+            values[fault[0]], places[fault[0]] = fault[1], place
     if values:
         document["tolerances"] = values
     return problems
 
 
 def _numbers_by_size(name: str, text: BySize, problems: list[FieldProblem]) -> dict[str, float] | float | None:
-    """Numbers by size as the application has them, or the one number for all; what can't be read is reported."""
+    """Numbers by size for the application, or one number for all sizes; unreadable ones are added to `problems`."""
     numbers: dict[str, float] = {}
     for part in text.parts:
         value = read_value(part.number, "number")
         if isinstance(value, Sentence):
             whole = len(text.parts) == 1 and not part.size
-            problems.append(FieldProblem(name, None, value if whole else _on_size(part.place, value)))
+            problems.append(
+                FieldProblem(name, None, value if whole else _on_part(ON_SIZE, {"size": _size(part.place)}, value))
+            )
         elif part.place in numbers and part.size:
             template = N_("{size} is given twice: give each size once")
             problems.append(FieldProblem(name, None, Sentence(template, {"size": _size(part.place)})))
@@ -204,13 +214,33 @@ def _numbers_by_size(name: str, text: BySize, problems: list[FieldProblem]) -> d
     return numbers[OTHERS] if numbers.keys() == {OTHERS} else numbers
 
 
-def _on_size(size: str, said: Sentence) -> Sentence:
-    """Sentence on the number of one size, which is part of a text: a form offers no number in place of that."""
+def _points(name: str, text: CurveText, problems: list[FieldProblem]) -> list[dict[str, float]]:
+    """Points of a curve for the application; unreadable ones are added to `problems`."""
+    points: list[dict[str, float]] = []
+    for place, texts in enumerate(text.points, 1):
+        if len(texts) != len(CurvePoint.model_fields):
+            torque = Typed("2.4", whole=False)
+            reason = Sentence(N_("give speed, continuous and peak torque, as 3000 : {torque} : 7"), {"torque": torque})
+            problems.append(FieldProblem(name, None, _on_part(ON_POINT, {"number": str(place)}, reason)))
+            continue
+        values = [read_value(number, "number") for number in texts]
+        wrong = [value for value in values if isinstance(value, Sentence)]
+        problems += (FieldProblem(name, None, _on_part(ON_POINT, {"number": str(place)}, value)) for value in wrong)
+        numbers = (float(value) for value in values if not isinstance(value, Sentence))
+        points.append(dict(zip(CurvePoint.model_fields, numbers, strict=bool(not wrong))))
+    return points
+
+
+ON_SIZE, ON_POINT = "{size}: {reason}", N_("point {number}: {reason}")
+
+
+def _on_part(template: str, part: Mapping[str, Value], sentence: Sentence) -> Sentence:
+    """Sentence on a part of a text, a size or a point of a curve; the form can't offer a number for such a part."""
     parts = {
         name: with_values(value, whole=False) if isinstance(value, Typed) else value
-        for name, value in said.values.items()
+        for name, value in sentence.values.items()
     }
-    return Sentence("{size}: {said}", {"size": _size(size), "said": with_values(said, values=parts)})
+    return Sentence(template, {**part, "reason": with_values(sentence, values=parts)})
 
 
 def _size(size: str) -> Sentence:
@@ -218,7 +248,7 @@ def _size(size: str) -> Sentence:
 
 
 def _with_two_phases(problem: FieldProblem, texts: Sequence[str]) -> FieldProblem:
-    """Fault of a number in the only phase, with advice where it may be two numbers."""
+    """Fault of a number in the only phase, with advice if the text may be several numbers."""
     several = next((text for text in texts if _VALUES.fullmatch(text.strip())), "")
     if several:
         example = "&".join(f"{problem.name}={value}" for value in re.findall("[+-]?[0-9]+", several)[:3])
@@ -259,7 +289,7 @@ def _put(
         return
     value = read_value(text, symbol.kind, mostly_whole=symbol.unit == "h")
     faults = [value] if isinstance(value, Sentence) else []
-    if symbol.name == NAME.role:
+    if symbol.name in NAMES:
         faults = list(faults_of(text, LONGEST_NAME))
     if faults:
         problems += (FieldProblem(place.name, place.index, fault) for fault in faults)
@@ -289,16 +319,16 @@ def _validated(
         if error["type"] == "no_motion":
             name = "n"
         error, name = _of_missing_cell(error, name)
-        # Unreadable values are left out of the model, which then misses them, or the part that they belong to.
+        # Unreadable values are left out of the model, which then reports them, or their part, as missing.
         consequence = known and error["type"] in ("no_motion", "no_load")
-        refused_phases = error["type"] == "too_short" and any(map(filled, rows))
+        refused_phases = error["type"] == "too_short" and name not in CURVES and any(map(filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:
             problems.append(FieldProblem(name, index, _refused(name, error)))
     return None, problems
 
 
 def _of_missing_cell(error: Any, name: str) -> tuple[Any, str]:
-    """Error and input of a move that lacks a figure: at the cell of that figure, which is what is missing."""
+    """Error and input; the error of a move that lacks a figure is placed at the cell of that figure."""
     if error["type"] == "move_needs":
         return {**error, "type": "missing"}, MOVE_BY_LEAF[error["ctx"]["field"]].name
     if error["type"] in ("move_takes_two", "move_takes_one") and "time_s" not in error["ctx"]["given"]:
@@ -307,18 +337,21 @@ def _of_missing_cell(error: Any, name: str) -> tuple[Any, str]:
 
 
 def _refused(name: str, error: Any) -> Sentence:
-    """Text for an error of the model, which says the size of a number by size, and the symbol of a tolerance."""
+    """Text for an error of the model; names the size of a number by size, and the symbol of a tolerance."""
     *path, size = error["loc"]
     if name in BY_SIZE and tuple(path) == BY_NAME[name].path:
-        return _on_size(str(size), refusal_of({**error, "loc": path}))
-    if name == TOLERANCE and len(error["loc"]) > 1:  # of several in one field
+        return _on_part(ON_SIZE, {"size": _size(str(size))}, refusal_of({**error, "loc": path}))
+    if name in CURVES and any(isinstance(step, int) for step in error["loc"]):
+        number = next(step for step in error["loc"] if isinstance(step, int)) + 1
+        return _on_part(ON_POINT, {"number": str(number)}, refusal_of(error))
+    if name == TOLERANCE and len(error["loc"]) > 1:  # one of several tolerances in a field
         symbol = tolerances.symbol_of(str(error["loc"][1]))
         return Sentence("{symbol}: {advice}", {"symbol": symbol, "advice": refusal_of(error)})
     return refusal_of(error)
 
 
 def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[str, int | None]:
-    """Query name and index of a location in the application model; `rows` are the rows that became phases."""
+    """Query name and index of a location in the application model; `rows` are the rows that became phases or moves."""
     path = tuple(step for step in location if isinstance(step, str))
     index = next((step for step in location if isinstance(step, int)), None)
     for table, by_leaf, first in _TABLES:
@@ -328,14 +361,14 @@ def place_of(location: Sequence[int | str], rows: Sequence[int] = ()) -> tuple[s
     if path[:1] == ("tolerances",) and len(path) > 1:
         return _field_of(path[1], rows)
     if path in BY_PATH:
-        return BY_PATH[path].name, index
-    if path[:-1] in BY_PATH and BY_PATH[path[:-1]].name in BY_SIZE:
+        return BY_PATH[path].name, None if BY_PATH[path].name in CURVES else index
+    if path[:-1] in BY_PATH and BY_PATH[path[:-1]].name in MERGED:
         return BY_PATH[path[:-1]].name, None
     return _PARTS.get(path, ".".join(path)), None
 
 
 def _field_of(path: str, rows: Sequence[int]) -> tuple[str, int | None]:
-    """Name and index of the field of a tolerance."""
+    """Name and index of a tolerance's field."""
     try:
         symbol, _, row = tolerances.symbol_of(path).partition(".")
     except KeyError:

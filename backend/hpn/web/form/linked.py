@@ -1,4 +1,4 @@
-"""Links that a request comes with: what files are made of, and the selection that is handed from page to page."""
+"""Links in requests: the source of a file's content, and the selection that is carried from page to page."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from hpn.web.door.uploads import read_fields
 from hpn.web.door.visit import address
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
-from hpn.web.form.given import CONDITION, Pairs
+from hpn.web.form.query import CONDITION, Pairs
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """Content of a link: an application, the gear that is looked at or none, labels, and options of a file."""
+    """Content of a link: an application, the gear shown or an empty text, labels, and options of a file."""
 
     application: Application
     gear: str
@@ -27,9 +27,9 @@ class Link:
 
 
 async def query_of(request: Request, *options: str) -> str:
-    """Query of the link in the address, or in the field `link` of a form, where it is too long for an address.
+    """Query of the link in the address, or in the field `link` of a form for links too long for an address.
 
-    Of the form's other fields only `options` are taken.
+    Of the form's other fields only `options` are used.
     """
     if request.method != "POST":
         query: bytes = request.scope["query_string"]
@@ -40,7 +40,7 @@ async def query_of(request: Request, *options: str) -> str:
 
 
 def query_part(link: str) -> str:
-    """Query of a link, which may come without its path."""
+    """Query of a link, which may lack its path."""
     return link.removeprefix("/").removeprefix("?")
 
 
@@ -65,7 +65,7 @@ def _unreadable(form: Form) -> Problem:
 # --- From page to page ------------------------------------------------------------------------------------------------
 
 WRITTEN_AT = "at_written"
-"""Marker of the language and units that they are typed in."""
+"""Parameter for the marker of the language and units in which a condition is typed."""
 
 OWN_NAMES = frozenset(
     (
@@ -73,14 +73,14 @@ OWN_NAMES = frozenset(
         *("back", WRITTEN_AT, *CONDITION),
     )
 )
-"""Parameters of the pages themselves; every other one belongs to that selection."""
+"""Parameters of the pages themselves; all others belong to the carried selection."""
 
 LONGEST_LINK = 4000
-"""Longest selection that is handed on."""
+"""Characters of the longest selection that is carried on."""
 
 
 def carried_pairs() -> Pairs:
-    """Parameters of that selection in the address of the request under way; none where it has no selection."""
+    """Parameters of the selection in the address of the request under way; none if it has no selection."""
     _, _, query = address().partition("?")
     pairs = [(name, text) for name, text in pairs_of(query) if name not in OWN_NAMES]
     known = any(name == "T" for name, _ in pairs)
@@ -88,6 +88,6 @@ def carried_pairs() -> Pairs:
 
 
 def onward(path: str, **more: str) -> str:
-    """Address of another page that keeps that selection; what is given here goes before the same of it."""
+    """Address of another page with the carried selection; parameters given here replace those of the selection."""
     pairs = [pair for pair in carried_pairs() if pair[0] not in more] + [(n, t) for n, t in more.items() if t]
     return f"{path}?{urlencode(pairs)}" if pairs else path

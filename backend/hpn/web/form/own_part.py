@@ -1,4 +1,4 @@
-"""An axis's own part of its application as pairs of a link, in which an own value stands also where it is a default."""
+"""Pairs of a link for an axis's own part of its application; an own value is written even if it equals the default."""
 
 import json
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -11,24 +11,24 @@ from hpn.application.tolerances import Tolerance
 from hpn.links.row_symbols import PHASE_SYMBOLS, move_symbols
 from hpn.links.rows import TOLERANCE
 from hpn.links.symbol import MOTION_PATH, Symbol
-from hpn.links.symbols import BY_SIZE, MECHANISM_SYMBOLS, SYMBOLS
+from hpn.links.symbols import BY_SIZE, CURVES, MECHANISM_SYMBOLS, SYMBOLS
 from hpn.links.tolerances import text_of
-from hpn.links.writer import shortened
+from hpn.links.writer import point_text, shortened
 from hpn.tables.by_size import BySize, Part
-from hpn.web.form.given import CYCLE_NAMES, Pairs
+from hpn.web.form.query import CYCLE_NAMES, Pairs
 from hpn.words.designations import OTHERS
 
 Json = Mapping[str, Any]
 
 
 def pairs_of_own(own: Json) -> list[tuple[str, str]]:
-    """Pairs of an own part, whatever a caller has sent in it; of one without a cycle those of a blank phase."""
+    """Pairs of an own part, malformed or not; a part without a cycle gets the pairs of a blank phase."""
     single = (pair for symbol in SYMBOLS for pair in _of_symbol(symbol, own))
     return [*_cycle(own), *single, *_tolerances(own.get("tolerances"))]
 
 
 def written(pairs: Pairs) -> str:
-    """Query of pairs, as canonical links write it."""
+    """Query of pairs in the form of canonical links."""
     return "&".join(f"{quote(name)}={quote(text, safe='/:')}" for name, text in pairs)
 
 
@@ -45,7 +45,7 @@ def _cycle(own: Json) -> Iterator[tuple[str, str]]:
 
 
 def _rows(rows: Any, symbols: Sequence[Symbol]) -> Iterator[tuple[str, str]]:
-    """Rows of a table, each with every figure that one of them has, and the first three in any case."""
+    """Pairs of a table's rows, each with every column that is used in any row, and always the first three columns."""
     table = [row for row in rows if isinstance(row, Mapping)] if isinstance(rows, list) else []
     used = [s for k, s in enumerate(symbols) if k < 3 or any(row.get(s.path[-1]) is not None for row in table)]
     for row in table:
@@ -61,6 +61,8 @@ def _of_symbol(symbol: Symbol, own: Json) -> Iterator[tuple[str, str]]:
     if symbol.name in BY_SIZE and isinstance(value, Mapping):
         for size, number in value.items():
             yield symbol.name, _text(number) if size == OTHERS else BySize([Part(str(size), _text(number))])
+    elif symbol.name in CURVES and isinstance(value, list) and all(isinstance(point, Mapping) for point in value):
+        yield from ((symbol.name, point_text(point)) for point in value)
     elif symbol.many and isinstance(value, list):
         yield from ((symbol.name, _text(item)) for item in value)
     else:
@@ -82,7 +84,7 @@ def _at(value: Any, path: Iterable[str]) -> Any:
 
 
 def _text(value: Any) -> str:
-    """A value as a link writes it; what no link can say is its JSON."""
+    """Text of a value in a link; a value that no link can express becomes its JSON."""
     if isinstance(value, str):
         return value
     if isinstance(value, float):
@@ -91,12 +93,12 @@ def _text(value: Any) -> str:
 
 
 def carried_over(now: Pairs, then: Pairs, own: Pairs, inherited: Collection[str]) -> list[tuple[str, str]]:
-    """Own pairs of an axis whose whole application is to be another one, `wo` for values that no longer hold.
+    """Own pairs of an axis whose whole application is to be replaced; `wo` names common values that no longer apply.
 
-    `now` and `then` are the pairs of the canonical links of both applications, `own` those that are the axis's own
-    now, `inherited` the names of common values. An own value that both links leave out, as it is a default, stays.
+    `now` and `then` are the pairs of the canonical links of both applications, `own` the axis's present own pairs,
+    `inherited` the names of common values. An own value that both links leave out, as it is a default, stays.
     """
-    before, after, mine = _grouped(now), _grouped(then), _grouped(own)
+    before, after, mine = grouped(now), grouped(then), grouped(own)
     rows = [pair for pair in then if pair[0] in CYCLE_NAMES]
     names = [name for name in dict.fromkeys((*mine, *after)) if name not in CYCLE_NAMES]
     pairs = [*rows, *(("wo", text) for text in mine.get("wo", ()))]
@@ -109,7 +111,8 @@ def carried_over(now: Pairs, then: Pairs, own: Pairs, inherited: Collection[str]
     return pairs + [("wo", name) for name in gone if name not in mine.get("wo", ())]
 
 
-def _grouped(pairs: Pairs) -> dict[str, list[str]]:
+def grouped(pairs: Pairs) -> dict[str, list[str]]:
+    """Texts of pairs by their names."""
     texts: dict[str, list[str]] = {}
     for name, text in pairs:
         texts.setdefault(name, []).append(text)

@@ -1,21 +1,21 @@
-"""Ramps of moves in the form: a pair of columns for the first and the last, by time or by acceleration."""
+"""Ramps of moves in the form: a pair of columns for the first and last ramp, in time or in acceleration."""
 
 from collections.abc import Callable
 
 from hpn.application import Application
 from hpn.links.row_symbols import move_symbols
 from hpn.links.rows import EVEN, OPTIONAL, filled
-from hpn.web.form.given import SortedQuery
+from hpn.web.form.query import SortedQuery
 
 COLUMNS = {"time": OPTIONAL["ramps"], "acceleration": (EVEN, *OPTIONAL["unequal"])}
-"""Columns of the first and the last ramp, by what they are given as."""
+"""Columns of the first and last ramp, by the quantity that gives them."""
 
 _GROUPS = {"time": "ramps", "acceleration": "unequal"}
 _RAMPED = ("trapezoidal", "s_curve")
 
 
 def press(query: SortedQuery, unit: str, application_of: Callable[[SortedQuery], Application | None]) -> None:
-    """Show the pair or leave it out; with a unit have all ramps in that one."""
+    """Show or hide the pair of columns; with a `unit` (time or acceleration) convert all ramps to it."""
     if unit in _GROUPS:
         application = application_of(query)
         query.shown |= {*_GROUPS.values()}
@@ -29,9 +29,9 @@ def press(query: SortedQuery, unit: str, application_of: Callable[[SortedQuery],
 
 
 def _turn(query: SortedQuery, unit: str, application: Application | None) -> None:
-    """Put the figure that follows from each ramp in its place: the moves stay the same.
+    """Replace each ramp by the equivalent figure in the other quantity: the moves stay the same.
 
-    Columns of the other unit stay where a figure is left in them, as in a move that is not finished.
+    Columns of the former quantity stay if a figure is left in them, for example in an incomplete move.
     """
     other = next(one for one in _GROUPS if one != unit)
     motion = application.duty_cycle.motion if application else None

@@ -1,4 +1,4 @@
-"""Texts for the errors of the application model, beside the fields of a form and in answers to links."""
+"""Texts for errors of the application model, beside the fields of a form and in answers to links."""
 
 import re
 from collections.abc import Mapping
@@ -7,11 +7,15 @@ from typing import Any
 from hpn.application.tolerances import WITH_VALUES
 from hpn.links.row_symbols import BODY_BY_LEAF, STROKE_SYMBOLS, TURN_SYMBOLS
 from hpn.links.symbol import Symbol
-from hpn.links.symbols import MECHANISM_SYMBOLS
+from hpn.links.symbols import BY_NAME, MECHANISM_SYMBOLS
 from hpn.physics.motion.refusals import REFUSALS
+from hpn.words.fields import LEAST
 from hpn.words.terms import PROFILES
 from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Quantity, Sentence, Value, listed
+
+MISSING = N_("is missing")
+"""Text for a required input that is blank."""
 
 _BOUNDS = {
     "greater_than": (N_("must be above {bound}"), "gt"),
@@ -19,6 +23,15 @@ _BOUNDS = {
     "less_than": (N_("must be below {bound}"), "lt"),
     "less_than_equal": (N_("must be at most {bound}"), "le"),
 }
+
+_WITH_INPUT = {
+    "error_radius": (N_("needs “{input}” as well"), "pr"),
+    "inertia_of_motor": (N_("needs “{input}” as well"), "Jm"),
+    "inertia_of_load": (N_("needs a motion, or “{input}”"), "JL"),
+    "opposing_below_load": (N_("must be at least “{input}”, which is part of it"), "TL"),
+    "curve_stall": (N_("must not be above “{input}”"), "Tst"),
+}
+"""Texts that name another input as its field does, where the model's have its path; by type of error."""
 
 _OF_BODY: Mapping[str, Symbol] = BODY_BY_LEAF
 _OF_MOTION: Mapping[str, Symbol] = {s.path[-1]: s for s in (*MECHANISM_SYMBOLS, *TURN_SYMBOLS, *STROKE_SYMBOLS)}
@@ -37,22 +50,29 @@ def refusal_of(error: Any) -> Sentence:
         return Sentence(REFUSALS[error["type"]], values)
     if error["type"] in WITH_VALUES:
         return Sentence(WITH_VALUES[error["type"]], {name: str(value) for name, value in context.items()})
+    if error["type"] in _WITH_INPUT:
+        template, name = _WITH_INPUT[error["type"]]
+        return Sentence(template, {"input": BY_NAME[name].named.name}, ("input",))
+    if error["type"] == "vanishing":
+        return Sentence(_BOUNDS["greater_than_equal"][0], {"bound": Quantity(LEAST, "", 12)})
     if error["type"] == "extra_forbidden":
         return Sentence(N_("does not belong to this mechanism: leave it out"))
     if error["type"] == "no_load":
         return Sentence(N_("give a radial or an axial load, here or in a phase"))
+    if error["type"] == "too_short" and context["min_length"] > 1:
+        return Sentence(N_("must have at least {bound} values"), {"bound": str(context["min_length"])})
     if error["type"] in ("missing", "too_short"):
-        return Sentence(N_("is missing"))
+        return Sentence(MISSING)
     if error["type"] == "too_long":
         return Sentence(N_("must have at most {bound} values"), {"bound": str(context["max_length"])})
     if error["type"] == "literal_error":
-        choices = ", ".join(re.findall("'([^']*)'", context["expected"]))  # the library's "or" is English
+        choices = ", ".join(re.findall("'([^']*)'", context["expected"]))  # pydantic's "or" is English
         return Sentence(N_("must be one of {expected}"), {"expected": choices})
     return Sentence("{text}", {"text": error["msg"]}, ("text",))
 
 
 def _value_of(name: str, value: Quantity | str, symbols: Mapping[str, Symbol]) -> Value:
-    """A value of a refusal: fields and profiles by their names."""
+    """Value in a refusal's text; fields and profiles by their names."""
     if isinstance(value, Quantity):
         return value
     if name == "profile":

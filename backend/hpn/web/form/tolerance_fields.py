@@ -1,7 +1,7 @@
-"""Fields of the form for tolerances: one beside each value, and one for a whole column of the duty table.
+"""Fields of the form for tolerances: one beside each value, and one for each column of the duty table.
 
-A field of a row stands in its row, so that it goes where the row goes. A number alone is percent, `0.5 Nm` an amount,
-and `+5 −2` lies unequally. A link has the same as `tol`: `T:10p`, `T.2:0.5`, `tp:2p/5p`.
+A row's fields are in the row and move with it. A number alone is percent, `0.5 Nm` an amount, `+5 −2` unequal on both
+sides. A link writes tolerances as `tol`: `T:10p`, `T.2:0.5`, `tp:2p/5p`.
 """
 
 import re
@@ -18,17 +18,17 @@ from hpn.words.patterns import Pattern
 from hpn.words.reader import MINUS, Reader
 
 COLUMN, ROW = "tol_", "tols_"
-"""Begin of the name of a field for a whole input or all rows, and of one that each row has."""
+"""Prefixes of field names: for a single input or a whole column, and for the cells of each row."""
 
 EXACT = "exact"
-"""Field that says that tolerances don't count for the moment."""
+"""Field that switches tolerances off."""
 
 OF_ROW: Mapping[str, str] = {
     f"{ROW}{name}": name
     for name, symbol in (PHASE_BY_NAME | MOVE_BY_NAME).items()
     if symbol.kind == "number" and not symbol.choices
 }
-"""Fields of rows and the symbols of their inputs, in the order of the columns."""
+"""Fields of rows, and the symbols of their inputs, in the order of the columns."""
 
 OF_COLUMN: Mapping[str, str] = {
     f"{COLUMN}{name}": name
@@ -39,11 +39,31 @@ OF_COLUMN: Mapping[str, str] = {
 
 INPUT_OF: Mapping[str, str] = {**OF_COLUMN, **OF_ROW}
 
-ASKED = ("u", "uw", "Lh", "Lb", "bl", "K3", "m", "L", "fn", "pe", "pem", "pr", "Jr", "nm", "Tm", "Tmn", "nmr")
-"""Inputs that say what is asked of a gear or known of a motor: they get a field where they have a tolerance already."""
+ASKED = (
+    "u",
+    "uw",
+    "Lh",
+    "Lb",
+    "bl",
+    "K3",
+    "m",
+    "L",
+    "fn",
+    "pe",
+    "pem",
+    "pr",
+    "Jr",
+    "nm",
+    "Tm",
+    "Tmn",
+    "nmr",
+    "Tst",
+    "mmo",
+)
+"""Requirements on the gear and data of the motor: they get a field only if they have a tolerance already."""
 
 OFFERED = frozenset(name for name in BY_NAME if name not in ASKED and f"{COLUMN}{name}" in OF_COLUMN)
-"""Inputs with a field beside them."""
+"""Inputs that always have a field for their tolerance."""
 
 _LONGEST = 80
 _PLUS_MINUS = Pattern(r"(?:\+/-|\+-|±)\s*", _LONGEST)
@@ -51,24 +71,24 @@ _SECOND_SIGN = Pattern(r"(?<=[^eE\s/;])[\s/;]*([+-])", _LONGEST)
 _AMOUNT = Pattern(r"(.*?)\s*abs\.?", _LONGEST)
 _DEGREES = Pattern(r"(.*?)\s*(K|°\s?C|°\s?F)", _LONGEST)
 ABSOLUTE, KELVIN = "abs.", "K"
-"""Endings of an amount of a pure number, which would else be percent, and of a temperature."""
+"""Endings of an amount for a pure number, which would otherwise be percent, and for a temperature."""
 
 
 def input_of(name: str) -> str:
-    """Symbol of the input whose field or tolerance a name of the form is."""
+    """Symbol of the input that a field of the form belongs to, be it the input's own or that of its tolerance."""
     return INPUT_OF.get(name, name)
 
 
 def symbol_in(text: str) -> str:
-    """Symbol of the input that a tolerance of a link is for."""
+    """Symbol of the input of a link's tolerance."""
     return re.split("[.:]", text.strip())[0]
 
 
-# --- What is typed ----------------------------------------------------------------------------------------------------
+# --- From typed texts to the wire -------------------------------------------------------------------------------------
 
 
 def typed(name: str, text: str, notation: Notation, units: Mapping[str, str]) -> Sides:
-    """Tolerance as it was typed in a field, for the wire; a link's own field has it as links do."""
+    """Tolerance typed in a field, for the wire; in a link's query the field holds the notation of links."""
     if notation.marker is None:
         return sides_of(text)
     unit = units.get(input_of(name), "")
@@ -86,7 +106,7 @@ def typed(name: str, text: str, notation: Notation, units: Mapping[str, str]) ->
 
 
 def _side(text: str, unit: str, notation: Notation) -> Side:
-    """One side; percent without a unit of its own."""
+    """One side of a tolerance; percent if no unit is typed."""
     text = text.strip()
     bare = text.removesuffix("%").rstrip()
     if bare != text or text.startswith("=") or read_decimal(text, notation.decimal) is not None:
@@ -101,17 +121,17 @@ def _side(text: str, unit: str, notation: Notation) -> Side:
     return Side(notation.entry(text, unit), is_percent=False)
 
 
-# --- What a field shows -----------------------------------------------------------------------------------------------
+# --- From the wire to fields ------------------------------------------------------------------------------------------
 
 
 def entries_of(name: str, text: str, units: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Numbers of a tolerance with their units, as fields of numbers take them."""
+    """Numbers of a tolerance with their units, for `numbers.to_fields`."""
     unit = units.get(input_of(name), "")
     return [(side.number, "" if side.is_percent or unit == "degC" else unit) for side in sides_of(text).parts]
 
 
 def field_of(name: str, text: str, numbers: Iterator[str], units: Mapping[str, str], reader: Reader) -> str:
-    """Text for a field, with the next numbers as the reader writes them."""
+    """Text of a tolerance's field; takes its numbers, in the reader's notation, from `numbers`."""
     unit = units.get(input_of(name), "")
     amount = ABSOLUTE if not unit else KELVIN if unit == "degC" else reader.unit(unit)
     parts = [
@@ -126,7 +146,7 @@ def field_of(name: str, text: str, numbers: Iterator[str], units: Mapping[str, s
 
 @dataclass(frozen=True, slots=True)
 class ToleranceField:
-    """A tolerance with its field: name, and the row for one of a row; `row` counts the rows that are filled."""
+    """Tolerance with its field: name, and index of its row, if any; `row` counts filled rows only."""
 
     name: str
     index: int | None
@@ -142,7 +162,7 @@ def place(
     scalars: dict[str, str],
     single: dict[str, list[str]],
 ) -> list[str]:
-    """Set tolerances of a link into their fields, of the inputs that the form has; those without one are returned."""
+    """Put tolerances of a link into the fields of the form's inputs; return those that have no field."""
     left = []
     for text in texts:
         match = WRITTEN.fullmatch(text.strip()) if len(text) <= LONGEST else None
@@ -157,7 +177,7 @@ def place(
 
 
 def _in_row(table: FormTable, k: int, name: str, sides: Sides) -> bool:
-    """Set a tolerance into its row; False where that has no field for it, or it is taken."""
+    """Put a tolerance into its row; return False if the row has no field for it, or the field is filled."""
     fits = k < len(table.rows) <= ROWS_IN_TABLE and OF_ROW[name] in table.names
     if not fits or table.rows[k].get(name, "").strip():
         return False
@@ -167,7 +187,7 @@ def _in_row(table: FormTable, k: int, name: str, sides: Sides) -> bool:
 
 
 def fields(table: FormTable, scalars: Mapping[str, str]) -> Iterator[ToleranceField]:
-    """Tolerances of all fields, those of rows by the rows that become phases or moves."""
+    """Yield the tolerances of all fields; only filled rows count, as only they become phases or moves."""
     for name, text in scalars.items():
         if name in OF_COLUMN:
             yield ToleranceField(name, None, OF_COLUMN[name], None, sides_of(text))

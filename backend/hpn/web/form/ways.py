@@ -1,6 +1,6 @@
-"""Ways to give a duty cycle: as phases, or as the motion of a mechanism. Inputs typed another way are kept aside.
+"""Ways to give a duty cycle: as phases, or as the motion of a mechanism. Inputs of the other ways are kept aside.
 
-A form has the inputs of one way; those of each other stand in a field `aside` of its own, as the query that they make.
+A form has the inputs of one way; a field `aside` for each other way holds its inputs as a query.
 """
 
 from urllib.parse import parse_qsl, urlencode
@@ -13,7 +13,7 @@ from hpn.links.symbols import mechanism_symbols
 from hpn.links.writer import to_link
 from hpn.physics.motion.mechanisms import CLASSES, TYPES
 from hpn.tables.numbers import Entry
-from hpn.web.form.given import REST_FRICTION, REVERSES, Pairs, SortedQuery, is_of_one_way
+from hpn.web.form.query import REST_FRICTION, REVERSES, Pairs, SortedQuery, is_of_one_way
 from hpn.words.wording import N_
 
 PHASES, MOTION = "phases", "motion"
@@ -22,10 +22,10 @@ _OF_PHASES_ALONE = {symbol.name for symbol in PHASE_SYMBOLS}.difference(OF_ANY_R
 
 MOST_FIELDS = 20_000
 DIGITS = 6
-"""Digits of the phases that are taken over from a motion."""
+"""Significant digits of the phases that are taken over from a motion."""
 
 START = {way: f"mech={way}&mv=trapezoidal&ms=&mt=" for way in TYPES} | {PHASES: "T=&n=&t="}
-"""Query of a way in which nothing is given yet; of a motion the profile, without which no cell of its move is open."""
+"""Query of each way with blank inputs; a motion has a profile, without which its move would have no open cell."""
 
 
 EXAMPLES = {
@@ -33,17 +33,17 @@ EXAMPLES = {
     "/?mech=ball_screw&J=0.0015&etam=0.9&h=20&ml=120&inc=90&mu=0.02"
     "&mv=s_curve&ms=400&mt=1.5&mv=dwell&ms=&mt=0.5&mv=s_curve&ms=-400&mt=1.5&mv=dwell&ms=&mt=0.5": N_("ball screw"),
 }
-"""Links of motions to begin with, and their names."""
+"""Links of example motions, and their names."""
 
 
 def way_of(pairs: Pairs) -> str:
-    """Way in which pairs give their duty cycle."""
+    """Way in which the duty cycle of pairs is given."""
     code = next((text.strip() for name, text in pairs if name == "mech"), "")
     return code if code in TYPES else PHASES
 
 
 def switch(current: SortedQuery, wanted: str) -> None:
-    """Choose another way: its inputs as they were left, those of before aside."""
+    """Switch to another way: restore its inputs, put the present ones aside."""
     own = current.cycle()
     queries = {way_of(query): query for query in map(_pairs_of, current.asides)}
     here = way_of(own)
@@ -66,7 +66,7 @@ def _says_anything(query: Pairs) -> bool:
 
 
 def _begun(own: Pairs, here: str, wanted: str) -> Pairs:
-    """A way that nobody has been in: what another linear mechanism has too is the same, all else blank."""
+    """Pairs of a way that is new: inputs that both mechanisms have are kept, all others are blank."""
     if here in CLASSES and wanted in CLASSES:
         others = {symbol.name for symbol in mechanism_symbols(here)} - {s.name for s in mechanism_symbols(wanted)}
         return [(name, wanted if name == "mech" else text) for name, text in own if name not in others]
@@ -74,7 +74,7 @@ def _begun(own: Pairs, here: str, wanted: str) -> Pairs:
 
 
 def take_over(current: SortedQuery, application: Application | None) -> bool:
-    """Have the phases that come out of a motion in place of the motion, which is kept aside; False without one."""
+    """Replace a motion by the phases that follow from it, and keep it aside; return False if there is no motion."""
     if application is None or not current.has_motion:
         return False
     phases = tuple(map(_rounded, application.duty_cycle.load_phases))
@@ -90,7 +90,7 @@ def take_over(current: SortedQuery, application: Application | None) -> bool:
 
 
 def _rounded(phase: Phase) -> Phase:
-    """A phase in fewer digits. Rounding keeps the order of numbers, so that no peak comes to lie below a mean."""
+    """Phase in fewer digits. Rounding keeps the order of numbers, so no peak falls below a mean."""
     return phase.model_copy(update={name: _in_few_digits(value) for name, value in phase if isinstance(value, float)})
 
 
@@ -99,7 +99,7 @@ def _in_few_digits(value: float) -> float:
 
 
 def _pairs_of(query: str) -> Pairs:
-    """Pairs of a query that stood aside; none where somebody else has written it."""
+    """Pairs of a query that was kept aside, if they belong to a single way; none if the query is malformed."""
     try:
         pairs = parse_qsl(query, keep_blank_values=True, max_num_fields=MOST_FIELDS)
     except ValueError:
@@ -108,4 +108,6 @@ def _pairs_of(query: str) -> Pairs:
 
 
 def _written(pairs: Pairs) -> str:
-    return urlencode([(name, text.shown if isinstance(text, Entry) and text.refusal else text) for name, text in pairs])
+    return urlencode(
+        [(name, text.field_text if isinstance(text, Entry) and text.refusal else text) for name, text in pairs]
+    )

@@ -1,6 +1,6 @@
-"""The answers of a machine as files for a table calculator or a program.
+"""Answers of a machine as files for a spreadsheet or a program.
 
-They are made in a process beside the service, which imports this module and none of the web's libraries.
+They are made in a process beside the service; it imports this module and no libraries of the web.
 """
 
 import io
@@ -22,13 +22,13 @@ from hpn.tables.cells import harmless
 from hpn.words.reader import Reader
 
 LONGEST_CELL = 32_767
-"""Characters that a cell of XLSX holds."""
+"""Maximum characters in a cell of XLSX."""
 
 
 def file_of(answers: pa.Table, created: datetime, suffix: str, reader: Reader) -> bytes:
-    """The answers of a machine in the format of a suffix, with the columns that `hpn fleet` gives them.
+    """Answers of a machine in the format of a suffix, with the columns of `hpn fleet`.
 
-    Reasons are in the reader's language where people read them.
+    Reasons are in the reader's language, in Parquet in English.
     """
     table = answers.drop_columns(NEAREST.names)
     if suffix == "parquet":
@@ -44,12 +44,12 @@ def _in_words(table: pa.Table, reader: Reader) -> pa.Table:
 
 
 def _reasons_in(reasons: Sequence[Reason], reader: Reader) -> str | None:
-    texts = [(reason.column, reader.told(reason.sentence)) for reason in reasons]
+    texts = [(reason.column, reader.sentence(reason.sentence)) for reason in reasons]
     return "; ".join(": ".join(filter(None, each)) for each in texts) or None
 
 
 def _csv(table: pa.Table) -> bytes:
-    """Lines for a table calculator: no cell of them is read as a formula there, quoted or not."""
+    """CSV for a spreadsheet, which reads no cell of it as a formula, quoted or not."""
     columns = [
         pa.array(map(harmless, column.to_pylist()), pa.string()) if kinds.is_string(column.type) else column
         for column in table.columns
@@ -75,7 +75,7 @@ def _workbook(table: pa.Table, moment: datetime) -> bytes:
 
 
 def _write(sheet: Any, row: int, place: int, value: Any) -> None:
-    """A text as text, whatever it begins with; one that no cell holds is cut and says so."""
+    """Write a value; a text is never a formula, and one too long for a cell is cut and ends in `…`."""
     if isinstance(value, str):
         whole = len(value) <= LONGEST_CELL
         sheet.write_string(row, place, value if whole else f"{value[: LONGEST_CELL - 1]}…")

@@ -1,11 +1,14 @@
-"""Static files under content-hashed names, precompressed when they were built, kept by browsers for ever."""
+"""Static files under content-hashed names, compressed by the build, cached by browsers for ever."""
 
+import gzip
 import json
 import mimetypes
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+import brotli
 from fastapi import APIRouter
+from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import State
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -16,10 +19,13 @@ from hpn.web.door.access import OPEN, admit
 from hpn.web.door.codings import accepted_codings
 
 DIST = data_folder("frontend/dist")
-ENCODINGS = {"br": ".br", "gzip": ".gz"}
-"""Content codings in order of preference, and the suffix of the file that holds each."""
+PACKED = ".br"
+"""Suffix of texts, which are stored compressed."""
 
-# Not every system's table knows these.
+CODINGS = ("br", "gzip")
+"""Content codings in order of preference."""
+
+# Some systems' tables lack these.
 mimetypes.add_type("text/javascript", ".js")
 mimetypes.add_type("text/javascript", ".mjs")
 mimetypes.add_type("font/woff2", ".woff2")
@@ -29,14 +35,16 @@ mimetypes.add_type("application/manifest+json", ".webmanifest")
 
 @dataclass(frozen=True)
 class Assets:
-    """Files that the build wrote, by the logical name that a template asks for."""
+    """Files of the build by their logical names, which templates use."""
 
     folder: Path
     manifest: dict[str, str]
+    unpacked: dict[tuple[str, str], bytes] = field(default_factory=dict)
+    """Texts by file and coding, for clients without brotli; bounded by the number of files."""
 
     @classmethod
     def load(cls, folder: Path = DIST) -> "Assets":
-        """Read the manifest; FileNotFoundError says how to make one."""
+        """Read the manifest; FileNotFoundError tells how to build a missing one."""
         path = folder / "manifest.json"
         try:
             return cls(folder, json.loads(path.read_text(encoding="utf-8")))
@@ -48,8 +56,16 @@ class Assets:
         return f"/static/{self.manifest[name]}"
 
     def file(self, hashed_name: str) -> Path | None:
-        """File of a hashed name, or None: only what the manifest lists is ever served."""
+        """File of a hashed name; None for a file that the manifest does not list."""
         return self.folder / hashed_name if hashed_name in self.manifest.values() else None
+
+    def text(self, path: Path, coding: str = "") -> bytes:
+        """Content of a text, plain or compressed with gzip."""
+        key = path.name, coding
+        if key not in self.unpacked:
+            plain = brotli.decompress(path.with_name(path.name + PACKED).read_bytes())
+            self.unpacked[key] = gzip.compress(plain, mtime=0) if coding else plain
+        return self.unpacked[key]
 
 
 def assets_of(state: State) -> Assets:
@@ -62,17 +78,22 @@ def assets_of(state: State) -> Assets:
 
 async def serve(request: Request) -> Response:
     """Send a file in the best coding that the client accepts."""
-    path = assets_of(request.app.state).file(request.path_params["name"])
+    assets = assets_of(request.app.state)
+    path = assets.file(request.path_params["name"])
     if path is None:
         raise HTTPException(404)
     headers = {"Cache-Control": "public, max-age=31536000, immutable"}
     media_type = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
-    for coding in accepted_codings(request.headers.get("accept-encoding", ""), ENCODINGS):
-        packed = path.with_name(path.name + ENCODINGS[coding])
-        if packed.exists():
-            headers |= {"Content-Encoding": coding, "Vary": "Accept-Encoding"}
-            return FileResponse(packed, headers=headers, media_type=media_type)
-    return FileResponse(path, headers=headers, media_type=media_type)
+    packed = path.with_name(path.name + PACKED)
+    if not packed.exists():
+        return FileResponse(path, headers=headers, media_type=media_type)
+    headers["Vary"] = "Accept-Encoding"
+    coding = next(iter(accepted_codings(request.headers.get("accept-encoding", ""), CODINGS)), "")
+    if coding:
+        headers["Content-Encoding"] = coding
+    if coding == "br":
+        return FileResponse(packed, headers=headers, media_type=media_type)
+    return Response(await run_in_threadpool(assets.text, path, coding), headers=headers, media_type=media_type)
 
 
 router = APIRouter(include_in_schema=False, dependencies=[OPEN])
@@ -96,7 +117,7 @@ DOCS = """<!doctype html>
 
 @docs_router.get("/docs")
 async def docs(request: Request) -> Response:
-    """The OpenAPI document as a page that sends requests: Swagger UI from the service's own files."""
+    """Page of the OpenAPI document that sends requests: Swagger UI from the service's own files."""
     url = assets_of(request.app.state).url
     page = DOCS.format(
         icon=url("favicon.svg"), style=url("swagger-ui.css"), library=url("swagger-ui-bundle.js"), start=url("docs.js")

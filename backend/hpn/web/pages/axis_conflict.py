@@ -1,6 +1,5 @@
-"""An axis that two people have changed: as it was opened, as it is stored now, and as one of them has typed it."""
+"""Axis that two people have changed: as opened, as stored now, and as typed by one of them."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import urlencode
 
@@ -10,20 +9,20 @@ from hpn.links.rows import TOLERANCE
 from hpn.links.symbols import BY_NAME, units_of
 from hpn.links.symbols import LABELS as NAMES
 from hpn.web.door.visit import current
-from hpn.web.form.given import CYCLE_NAMES, Pairs
-from hpn.web.form.own_part import written
+from hpn.web.form.own_part import grouped, written
+from hpn.web.form.query import CYCLE_NAMES, Pairs
 from hpn.web.pages.axis_view import OPENED, VERSION, WITHOUT, AxisView, stored_pairs
 from hpn.words.wording import N_
 
 Cell = tuple[str, int]
-"""Name of an input, and its row or its place among repeated ones."""
+"""Name of an input, and its row or its index among repeated inputs."""
 
 _SPECIAL = {WITHOUT: N_("Without the machine’s value"), TOLERANCE: N_("Tolerance")}
 
 
 @dataclass(frozen=True, slots=True)
 class InputConflict:
-    """One input with its three texts, blank where it is not given; `asked` where both have changed it."""
+    """Input with its three texts, blank if not given; `asked` if both editors have changed it."""
 
     name: str
     row: int | None
@@ -36,7 +35,7 @@ class InputConflict:
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Differences, and the links of the three ways on; none to both together where nobody knows what was opened."""
+    """Differences, and links to keep one's own, to overwrite, or to join both; not to join if `opened` is unknown."""
 
     lines: tuple[InputConflict, ...]
     known: bool
@@ -46,7 +45,7 @@ class Conflict:
 
 
 def conflict_of(view: AxisView, catalogue: Catalogue) -> Conflict:
-    """Conflict of an axis with what is stored."""
+    """Conflict of a typed axis with the stored one."""
     theirs = stored_pairs(view.axis, catalogue)
     since = [(VERSION, str(view.axis.version)), (OPENED, urlencode(theirs))]
     together = () if view.opened is None else _joined(view.opened, theirs, view.typed)
@@ -101,8 +100,8 @@ def _shown(name: str, text: str, unit: str) -> str:
 
 
 def _joined(opened: Pairs, theirs: Pairs, yours: Pairs) -> Pairs:
-    """Theirs with what is changed in yours; the rows of a cycle one by one where all three have as many."""
-    groups = [_grouped(side) for side in (opened, theirs, yours)]
+    """Their pairs with your changes; rows of a cycle are joined one by one if all three have the same number."""
+    groups = [grouped(side) for side in (opened, theirs, yours)]
     cycle = {name for group in groups for name in group if name in CYCLE_NAMES}
     rows = [{name: len(group.get(name, ())) for name in cycle} for group in groups]
     pairs: list[tuple[str, str]] = []
@@ -118,10 +117,3 @@ def _joined(opened: Pairs, theirs: Pairs, yours: Pairs) -> Pairs:
             texts = here if before != here else there
         pairs += [(name, text) for text in texts]
     return pairs
-
-
-def _grouped(pairs: Pairs) -> Mapping[str, list[str]]:
-    texts: dict[str, list[str]] = {}
-    for name, text in pairs:
-        texts.setdefault(name, []).append(text)
-    return texts

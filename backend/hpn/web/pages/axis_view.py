@@ -1,8 +1,8 @@
-"""An axis of a machine as the workbench shows it: what is its own, what it inherits, and where it stands."""
+"""Axis of a machine in the workbench: its own values, its inherited values, and its place."""
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 from urllib.parse import parse_qsl, urlencode
@@ -21,17 +21,18 @@ from hpn.links.row_symbols import MOVE_BY_NAME, PHASE_BY_NAME
 from hpn.links.rows import TEXT, TOLERANCE
 from hpn.links.symbols import BY_NAME, BY_PATH, COMMON_NAMES
 from hpn.links.writer import to_link
-from hpn.store import Machine, SavedAxis
+from hpn.store import AxesOfGear, Machine, RevisionLine, SavedAxis
 from hpn.tables.numbers import read_value
 from hpn.web.columns import common_of, own_of, without_of
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
 from hpn.web.form.common import OF_TOLERANCE, form_of
 from hpn.web.form.form import Form
-from hpn.web.form.given import FIRST_TOLERANCE, FieldProblem, Pairs
 from hpn.web.form.own_part import carried_over, pairs_of_own, written
+from hpn.web.form.query import FIRST_TOLERANCE, FieldProblem, Pairs
 from hpn.web.form.refusals import refusal_of
 from hpn.web.form.tolerance_fields import EXACT, INPUT_OF
+from hpn.web.pages.revisions_view import MOST_REVISIONS
 from hpn.words.wording import Sentence
 
 Json = dict[str, Any]
@@ -39,12 +40,12 @@ Json = dict[str, Any]
 WITHOUT, VERSION, OPENED, PLACE, EDIT = "wo", "v", "opened", "axis", "edit"
 LABELS = ("name", "quantity", "note")
 OF_AXIS = frozenset((WITHOUT, VERSION, OPENED, PLACE, EDIT, *LABELS))
-"""Parameters of an axis beside those of its application: paths that it goes without, its labels, and what it was when
-somebody opened it, as its version and as its own part, and the step that asks for the key.
+"""Parameters of an axis beside those of its application: common values that it leaves out, its labels, its version and
+own part when it was opened, its identity for other pages, and the step that asks for the key.
 """
 
 CHOSEN = ("gear", "order_output", "order_motor")
-"""Parameters that make its ordering code."""
+"""Parameters that make an axis's ordering code."""
 
 _OWN = {*PHASE_BY_NAME, *MOVE_BY_NAME, *BY_NAME, TEXT, TOLERANCE, WITHOUT}
 _PRESS = re.compile(r"(without|common):([A-Za-z0-9]{1,8}|tolerances\.[A-Za-z0-9_.]{1,100})")
@@ -52,14 +53,14 @@ _PRESS = re.compile(r"(without|common):([A-Za-z0-9]{1,8}|tolerances\.[A-Za-z0-9_
 
 @dataclass(frozen=True, slots=True)
 class Neighbours:
-    """Axes before and after one in the order of its machine; None at its ends."""
+    """Axes before and after an axis in the order of its machine; None at its ends."""
 
     previous: SavedAxis | None = None
     next: SavedAxis | None = None
 
 
 class CommonTolerance(NamedTuple):
-    """A tolerance of the machine, and whether it holds for an axis: not where that goes without, or has its own."""
+    """Tolerance of the machine, and reasons why it doesn't apply to an axis: left out, not asked, own tolerance."""
 
     path: str
     line: ToleranceLine
@@ -70,12 +71,12 @@ class CommonTolerance(NamedTuple):
 
 @dataclass(frozen=True)
 class AxisView:
-    """An axis with what somebody has typed.
+    """Axis with typed inputs.
 
-    `labels` are name, quantity and note as typed, `own` its own part and `without` the names of common values that do
-    not hold for it; `typed` are these and the ordering code as pairs, `opened` the same of the axis as it was opened,
-    None where nobody knows that any more, and `version` counts its changes until then. `may_change` is False for a
-    reader who may not save it back.
+    `labels` are name, quantity and note as typed, `own` is its own part, and `without` are the names of common values
+    that don't apply to it. `typed` holds these and the ordering code as pairs. `opened` holds the pairs of the axis
+    when it was opened, None if unknown; `version` is its version then. `may_change` is False for a reader who may not
+    save it. `gears` are those of the machine's other axes, `revisions` those of the machine, the latest first.
     """
 
     machine: Machine
@@ -89,31 +90,45 @@ class AxisView:
     opened: tuple[tuple[str, str], ...] | None
     version: int
     may_change: bool = True
+    gears: Mapping[str, AxesOfGear] = field(default_factory=dict, repr=False)
+    revisions: Sequence[RevisionLine] = ()
+
+    most_revisions = MOST_REVISIONS
 
     @property
     def place(self) -> str:
-        """Address of its page."""
+        """Address of the axis's page."""
         return place_of(self.machine.id, self.axis.number)
 
     @property
+    def document(self) -> str:
+        """Address of the document whose revisions have the axis."""
+        return f"/{self.machine.kind}s/{self.machine.id}"
+
+    @property
+    def row(self) -> str:
+        """Place of the axis on the page of a revision: its row in a machine."""
+        return f"#axis-{self.axis.number}" if self.machine.kind == "machine" else ""
+
+    @property
     def key(self) -> str:
-        """Hidden fields by which a form names its axis."""
+        """Identity of the axis in a form's hidden field: ids of machine and axis."""
         return f"{self.machine.id}/{self.axis.number}"
 
     @property
     def at(self) -> int:
-        """Its place in the order, from 1."""
+        """Place of the axis in the order, from 1."""
         return self.machine.order.index(self.axis.number) + 1
 
     @property
     def common(self) -> Mapping[str, Any]:
-        """Common values of its machine by the names of links."""
-        found = ((BY_PATH.get(tuple(path.split("."))), value) for path, value in flat(common_of(self.machine)))
-        return {symbol.name: _shown(value) for symbol, value in found if symbol}
+        """Common values of the machine by the names of links."""
+        symbols = ((BY_PATH.get(tuple(path.split("."))), value) for path, value in flat(common_of(self.machine)))
+        return {symbol.name: _choice(value) for symbol, value in symbols if symbol}
 
     @property
     def common_tolerances(self) -> list[CommonTolerance]:
-        """Tolerances of its machine that it may have, each with its place beside the inputs."""
+        """Common tolerances of the machine, each with the reasons why it doesn't apply."""
         own = self.own.get("tolerances") or {}
         return [
             CommonTolerance(
@@ -125,7 +140,7 @@ class AxisView:
 
     @cached_property
     def tolerances(self) -> Mapping[str, str]:
-        """Tolerances that it takes from its machine as the fields show them, by the names of fields."""
+        """Tolerances inherited from the machine, in the notation of fields, by the names of fields."""
         absent = {each.path for each in self.common_tolerances if each.is_left or each.is_not_asked}
         values = {path: value for path, value in flat(common_of(self.machine)) if path not in absent}
         texts = form_of(values, current(), has_tolerances=True).texts
@@ -133,26 +148,26 @@ class AxisView:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """Paths of the common values that do not hold for it."""
+        """Paths of the common values that don't apply to the axis."""
         return tuple(path for name in self.without if (path := _path_of(name)))
 
     @property
     def changed(self) -> bool:
-        """True for an axis that is not as it was opened."""
+        """True if the axis differs from its state when it was opened."""
         return self.typed != self.opened
 
     @property
     def overtaken(self) -> bool:
-        """True where somebody else has saved it since."""
+        """True if somebody else has saved the axis since."""
         return self.version != self.axis.version
 
     @property
     def opened_text(self) -> str:
-        """The axis as it was opened, for a form or an address."""
+        """Pairs of the axis when it was opened, for a form or an address."""
         return "" if self.opened is None else urlencode(self.opened)
 
     def link(self, application: Application) -> str:
-        """Address of the axis when its whole application is another one, without gear, pins and ordering code."""
+        """Address of the axis with another whole application, without gear, pins and ordering code."""
         own = [pair for pair in self.typed if pair[0] not in (*CHOSEN, *LABELS)]
         if application != self.resolved.application and self.resolved.application is not None:
             now, then = (_pairs(to_link(each)) for each in (self.resolved.application, application))
@@ -161,7 +176,7 @@ class AxisView:
 
     @property
     def open_link(self) -> str:
-        """The same of an axis that is still open."""
+        """Address of an axis that is still open, without gear, pins and ordering code."""
         return self._link_of([pair for pair in self.typed if pair[0] not in (*CHOSEN, *LABELS)])
 
     def _link_of(self, own: Pairs) -> str:
@@ -170,7 +185,7 @@ class AxisView:
         return f"{self.place}?{written([*own, *labels, *since])}"
 
     def address(self, link: str, tail: str) -> str:
-        """Address for the address bar, which says nothing of an axis that is as it was stored."""
+        """Address for the address bar; without a query for an axis in its stored state."""
         as_stored = not self.changed and not self.overtaken and "&pin=" not in tail
         return self.place if as_stored else link + tail
 
@@ -181,7 +196,7 @@ def place_of(id: str, number: int) -> str:
 
 
 def stored_pairs(axis: SavedAxis, catalogue: Catalogue) -> tuple[tuple[str, str], ...]:
-    """An axis as it is kept, as pairs."""
+    """Pairs of a stored axis."""
     labels = {"name": axis.name or "", "quantity": str(axis.quantity), "note": axis.note or ""}
     names = [symbol.name if (symbol := BY_PATH.get(tuple(path.split(".")))) else path for path in without_of(axis)]
     code = read_ordering_code(catalogue, axis.ordering_code or "")
@@ -201,17 +216,17 @@ def _state(
 def view_of(
     machine: Machine, axis: SavedAxis, neighbours: Neighbours, pairs: Pairs, catalogue: Catalogue
 ) -> tuple[Form, AxisView]:
-    """Form of an axis with what a query says, and the axis with it; without anything of its own as it is stored."""
+    """Form and axis with the inputs of a query; with the stored inputs if the query has none of the axis's own."""
     stored = stored_pairs(axis, catalogue)
     if not any(name in _OWN for name, _ in pairs):
         pairs = [*(pair for pair in stored if pair[0] not in dict(pairs)), *pairs]
     pairs, focus = _pressed(pairs)
-    if common_of(machine).get("tolerances"):  # which have fields, and count whatever is said of its own
+    if common_of(machine).get("tolerances"):  # they have fields, and count even if the axis's own don't
         pairs = [pair for pair in pairs if pair[0] != EXACT]
         pairs += [] if any(name in INPUT_OF or name == TOLERANCE for name, _ in pairs) else [(FIRST_TOLERANCE, "")]
-    given = dict(reversed(pairs))
+    texts = dict(reversed(pairs))
     without = tuple(dict.fromkeys(text for name, text in pairs if name == WITHOUT and _path_of(text)))
-    labels = {name: given.get(name, dict(stored).get(name, "")).strip() for name in LABELS}
+    labels = {name: texts.get(name, dict(stored).get(name, "")).strip() for name in LABELS}
     paths = [path for name in without if (path := _path_of(name))]
     seen: list[tuple[Json, Resolved]] = []
 
@@ -224,19 +239,19 @@ def view_of(
     own, resolved = seen[0]
     form = replace(form, focus=focus or form.focus, problems=(*form.problems, *_faults(labels)))
     chosen = {"gear": form.gear, **_ordered(form, catalogue)}
-    version = int(given[VERSION]) if re.fullmatch(r"[0-9]{1,9}", given.get(VERSION, "")) else axis.version
-    opened = stored if version == axis.version else _opened(given.get(OPENED, ""))
+    version = int(texts[VERSION]) if re.fullmatch(r"[0-9]{1,9}", texts.get(VERSION, "")) else axis.version
+    opened = stored if version == axis.version else _opened(texts.get(OPENED, ""))
     typed = _state(pairs_of_own(own), without, labels, chosen)
     return form, AxisView(machine, axis, neighbours, labels, own, resolved, without, typed, opened, version)
 
 
 def _ordered(form: Form, catalogue: Catalogue) -> Mapping[str, str]:
-    """Labels of the ordering code as typed; the default version of the output counts as none."""
+    """Labels of the ordering code as typed; the default version of the output counts as blank."""
     return ordering_code(catalogue, catalogue.gears[0], *(form.labels[name] for name in CHOSEN[1:])).labels
 
 
 def _path_of(name: str) -> str | None:
-    """Path of a common value by its symbol; a tolerance is named by its path. None for any other text."""
+    """Path of a common value by its symbol, or of a tolerance by its path; None for any other text."""
     return COMMON_NAMES.get(name) or (name if name not in COMMON and is_common(name) else None)
 
 
@@ -245,7 +260,7 @@ def _opened(text: str) -> tuple[tuple[str, str], ...] | None:
 
 
 def _pressed(pairs: Pairs) -> tuple[Pairs, str | None]:
-    """Pairs after the buttons of common values, and the field to go on from."""
+    """Pairs after the buttons of common values were applied, and the field to focus."""
     focus = None
     for _, text in [pair for pair in pairs if pair[0] == "do"]:
         if (press := _PRESS.fullmatch(text)) and (field := _field_of(press[2])):
@@ -262,13 +277,13 @@ def _field_of(name: str) -> str | None:
     return next((field for field, path in OF_TOLERANCE.items() if path == name), name if is_common(name) else None)
 
 
-def _shown(value: Any) -> Any:
-    """A common value as the choices of a field have it."""
+def _choice(value: Any) -> Any:
+    """Common value in the form of a field's choices."""
     return str(int(value)) if isinstance(value, bool) else value
 
 
 def _without_blanks(document: Json) -> Json:
-    """Own part of an axis: what a form leaves blank is inherited."""
+    """Own part of an axis, without blank values, which are inherited."""
     own = {name: value for name, value in document.items() if value not in (None, {}, [])}
     for name, part in own.items():
         if isinstance(part, dict):
@@ -277,14 +292,14 @@ def _without_blanks(document: Json) -> Json:
 
 
 def values_of(labels: Mapping[str, str]) -> Axis:
-    """Labels of an axis as typed; ValidationError where one is wrong."""
+    """Labels of an axis as typed; ValidationError for an invalid one."""
     quantity = read_value(labels["quantity"] or "1", "whole")
     return Axis.model_validate({"name": labels["name"] or None, "note": labels["note"] or None, "quantity": quantity})
 
 
 def _faults(labels: Mapping[str, str]) -> list[FieldProblem]:
-    if isinstance(said := read_value(labels["quantity"] or "1", "whole"), Sentence):
-        return [FieldProblem("quantity", None, said)]
+    if isinstance(quantity := read_value(labels["quantity"] or "1", "whole"), Sentence):
+        return [FieldProblem("quantity", None, quantity)]
     try:
         values_of(labels)
     except ValidationError as refused:

@@ -1,4 +1,4 @@
-"""The page: one address that takes the whole application, and answers with the whole page or with what has changed."""
+"""Live page: one address takes the whole application, and answers with the whole page or with its changed parts."""
 
 import secrets
 from dataclasses import dataclass, replace
@@ -14,7 +14,6 @@ from hpn.application import Application, InputError
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import OrderingCode, ordering_code
 from hpn.engine.selection import judge
-from hpn.engine.tried import tried
 from hpn.explain.drawings import Pictures, default_condition
 from hpn.links.labels import query_of
 from hpn.links.writer import to_link
@@ -26,9 +25,9 @@ from hpn.web.door.visit import absolute, current
 from hpn.web.form import link_reader
 from hpn.web.form.condition import Condition, condition_of
 from hpn.web.form.form import Form, address_of_empty, for_reader
-from hpn.web.form.given import CYCLE_NAMES, FieldProblem
 from hpn.web.form.linked import LONGEST_LINK, WRITTEN_AT
 from hpn.web.form.offers import beside_fields
+from hpn.web.form.query import CYCLE_NAMES, FieldProblem
 from hpn.web.pages.axis_view import AxisView
 from hpn.web.pages.gear_map import GearMap, map_of
 from hpn.web.pages.insight import Insight, checked_pins, tail_of
@@ -37,22 +36,22 @@ from hpn.web.pages.templates import environment
 from hpn.words.wording import N_, Sentence
 
 SECTIONS = ("overview", "bearing", "drive", "candidates", "compare", "tolerance", "calculation", "notes")
-"""The result by sections, in their order."""
+"""Sections of the result in their order."""
 
 FIGURES = frozenset(("bearing_figure", "sizes_figure"))
-"""Plots, which come only when somebody unfolds them: without script there is no use for their data."""
+"""Plots, sent only when they are unfolded: their data are useless without script."""
 
 PARTS = FIGURES.union(SECTIONS[1:])
-"""Parts of the page that an edit brings only where they are in sight, by the header HPN-Parts; others are fetched."""
+"""Parts that an edit sends only if they are in sight, as the header HPN-Parts says; others are fetched later."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class LiveResult(Result):
-    """The result of the live page, with the gears beside the chosen one.
+    """Result of the live page, with the gears beside the chosen one.
 
-    `link` is the application alone, `address` all that the form says; on the page of an axis, `axis`, these are of its
-    own part, and `whole` is all of it as a selection of its own.
-    `own_cycle` is the address without what the worked example has left beside another cycle, else empty.
+    `link` contains the application alone, `address` everything in the form. On the page of an axis, `axis`, both
+    contain its own part only; `whole` is the whole application as a separate selection.
+    `own_cycle` is the address of the cycle alone if everything beside it is still the worked example's, else empty.
     """
 
     application: Application
@@ -69,87 +68,79 @@ class LiveResult(Result):
 
     @cached_property
     def condition(self) -> Condition:
-        """Condition of what the shaft may carry as it was typed beside the answer, where no load is given."""
+        """Condition for the shaft's permitted load, typed beside the answer when no load is given."""
         assert self.pictures is not None
         typed = [(WRITTEN_AT, self.form.written or ""), *self.form.condition.items()]
         return condition_of(typed, current(), default_condition(self.pictures.subject))
 
     @cached_property
     def bearing_pictures(self) -> Pictures | None:
-        """Those of the section on the output bearing: without a load under the condition that was typed."""
+        """Pictures of the section on the output bearing; without a load under the typed condition."""
         if self.pictures is None or self.application.loads is not None:
             return self.pictures
         return replace(self.pictures, condition=self.condition.query)
 
     @cached_property
     def map(self) -> GearMap:
-        """Map of every gear of the catalogue."""
+        """Map of all gears in the catalogue."""
         return map_of(self.selection, self.insight.everything, self.catalogue)
 
     @property
     def mark(self) -> str:
-        """Short mark of the answer, by which a part that comes later is known to belong to it."""
+        """Short mark of the answer; it identifies parts of the answer that are sent later."""
         return f"{crc32(self.address.encode()):08x}"
-
-    def tries(self, designation: str) -> tuple[str, ...]:
-        """Links that follow the alternatives of a gear's remedy, one each."""
-        alternatives = self.alternatives(designation)
-        return tuple(self.links(tried(self.application, one, self.catalogue)) for one in alternatives)
 
     @property
     def carried(self) -> str:
-        """Query for the links to other pages, which hand the selection on; blank for one that is too long for that."""
+        """Query that carries the selection to other pages; blank for a selection that is too long."""
         return self.whole[1:] if len(self.whole) <= LONGEST_LINK else ""
 
     @property
     def too_long(self) -> bool:
-        """True for an address longer than servers and proxies let through."""
+        """True if the address is longer than servers and proxies let through."""
         return len(self.address) > MAXIMUM_QUERY_BYTES
 
 
 def once_key() -> str:
-    """A key that nobody can guess: what a page says is saved once, however often it is sent."""
+    """Unguessable key of a page's form: however often the form is sent, it is saved once."""
     return secrets.token_urlsafe(16)
 
 
 def show(request: Request) -> Response:
-    """The page of `/`, or only the part that changes with the input where htmx asks for it."""
+    """Page of `/`, or for htmx only the part that changes with the input."""
     query = request.scope["query_string"]
     return respond(request, read_query(query), first=not query)
 
 
 async def show_posted(request: Request) -> Response:
-    """The same of a form that is posted, since it may be too long for an address; nothing is kept."""
-    return await compute(request, "pages", _posted, request, await read_form(request))
-
-
-def _posted(request: Request, body: bytes) -> Response:
-    return respond(request, link_reader.parse(pairs_of(body)))
+    """Page of a posted form, which may be too long for an address; saves nothing."""
+    body = await read_form(request)
+    return await compute(request, "pages", lambda: respond(request, link_reader.parse(pairs_of(body))))
 
 
 def respond(request: Request, form: Form, *, first: bool = False, axis: AxisView | None = None) -> Response:
-    """The page of a form, or only the part that changes; a first visit says above the answer what the page is for.
+    """Page of a form, or only the part that changes; a first visit also gets the page's purpose above the answer.
 
-    The form may be that of an axis of a machine.
+    The form may belong to an axis of a machine.
     """
     catalogue: Catalogue = request.app.state.catalogue
     form, answer = answered(form, catalogue, axis)
     changes = "hx-request" in request.headers
-    # The page holds nothing that its address has not.
+    # True if the address contains everything that the page does.
     alone = not (form.focus or form.asides or form.bodies.given or (form.has_tolerances and form.is_exact))
     if answer and WRITTEN in request.query_params and not changes and alone:
         own = answer.condition.tail if form.condition else ""
         return RedirectResponse(
             f"{answer.address}{own}", 303
-        )  # what was written in a reader's units gets an address for all
+        )  # input in a reader's units gets an address for everybody
     parts = _parts(request, form)
     if answer and "result" in parts:
         request.app.state.metrics.selections(["none" if answer.selection.selected is None else "selected"])
     if answer is None and parts <= PARTS:
-        return Response(status_code=204)  # a form with faults has no parts to fetch: those of the answer before stay
+        return Response(status_code=204)  # a form with faults has no parts to fetch: the previous answer's stay
     template = "_changes.html" if changes else "axis.html" if axis else "page.html"
     status = 422 if form.problems and not (axis and not axis.changed) else 200
-    once = "" if axis else once_key()  # what is saved of an axis names the state that it changes
+    once = "" if axis else once_key()  # saving an axis names the state that it changes
     values: dict[str, Any] = {"form": form, "answer": answer, "parts": parts, "catalogue": catalogue, "once": once}
     values |= {"first": first, "axis": axis, "bench": axis.place if axis else "/"}
     printed = absolute(request, answer.address) if answer else ""
@@ -157,13 +148,13 @@ def respond(request: Request, form: Form, *, first: bool = False, axis: AxisView
 
 
 def read_query(query: bytes) -> Form:
-    """Form of a query; without one, the handbook's worked example."""
+    """Form of a query; the handbook's worked example without a query."""
     text = query.decode("latin-1") or to_link(Application.worked_example()).removeprefix("/?")
     return link_reader.parse(pairs_of(text))
 
 
 def answered(form: Form, catalogue: Catalogue, axis: AxisView | None = None) -> tuple[Form, LiveResult | None]:
-    """Answer to a form; a form that can't be answered comes back with its problems."""
+    """Form and its answer; without an answer the form has problems, or is blank."""
     if form.gear and catalogue.find(form.gear) is None:
         unknown = Sentence(N_("{gear} is not a gear of the catalogue"), {"gear": form.gear[:40]})
         form = replace(form, problems=(*form.problems, FieldProblem("gear", None, unknown)))
@@ -212,13 +203,13 @@ def _answer(application: Application, form: Form, catalogue: Catalogue, axis: Ax
 
 
 def _own_cycle(link: str) -> str:
-    """Link of a cycle alone where all that stands beside it is still the worked example's, else empty."""
+    """Link of a cycle alone if everything beside it is still the worked example's, else empty."""
     (own, beside), (example, left) = (_parted(each) for each in (link, to_link(Application.worked_example())))
     return f"/?{'&'.join(own)}" if beside == left and own != example else ""
 
 
 def _parted(link: str) -> tuple[list[str], list[str]]:
-    """Parameters of a link that make its cycle, and the others."""
+    """Parameters of a link that belong to its cycle, and the others."""
     own, beside = list[str](), list[str]()
     for pair in link.removeprefix("/?").split("&"):
         (own if pair.partition("=")[0] in CYCLE_NAMES else beside).append(pair)
@@ -226,24 +217,24 @@ def _parted(link: str) -> tuple[list[str], list[str]]:
 
 
 def _parts(request: Request, form: Form) -> frozenset[str]:
-    """Parts that the answer is to bring: of a page all, of an edit what it changes and what is in sight.
+    """Parts to send: all of them for a page, the changed ones and those in sight for an edit.
 
-    Typing changes the result alone. Buttons that edit rows, and what takes the place of all inputs, change the form.
+    Typing changes only the result. Buttons that edit rows, and replacements of all inputs, change the form.
     """
     if "hx-request" not in request.headers:
         return PARTS - FIGURES | {"form", "result"}
     _, _, target = request.headers.get("hx-target", "").partition("#")
     if target in PARTS:
         return frozenset((target,))
-    seen = PARTS.intersection(request.headers.get("hpn-parts", "").split())
-    return seen | ({"result"} if target == "result" and not form.focus else {"form", "result"})
+    parts = PARTS.intersection(request.headers.get("hpn-parts", "").split())
+    return parts | ({"result"} if target == "result" and not form.focus else {"form", "result"})
 
 
 def _render(request: Request, template: str, status: int, **context: Any) -> Response:
     form: Form = context["form"]
     address = _address(context["answer"], form, context["axis"])
     form = replace(form, problems=beside_fields(form.problems, form.written, current()))
-    if "form" in context["parts"]:  # typing brings the result alone, and leaves the fields as they are
+    if "form" in context["parts"]:  # typing gets only the result, and leaves the fields unchanged
         form = for_reader(form, current())
     context["form"] = form
     content = environment(request.app.state).get_template(template).render(**context)
@@ -258,12 +249,12 @@ def _render(request: Request, template: str, status: int, **context: Any) -> Res
 
 
 def _address(answer: LiveResult | None, form: Form, axis: AxisView | None) -> str | None:
-    """Address for the address bar; None where there is something to correct."""
+    """Address for the address bar; None for a form with problems."""
     if answer is None and axis and form.empty:
         return axis.address(axis.open_link, tail_of(form.pins))
     if answer is None:
         return address_of_empty(form) if form.empty else None
-    # A page too long for an address must not stand under another's: reloading leads to where it came from.
+    # A page too long for an address must not appear under another page's: reloading returns to its source.
     return (axis.place if axis else "/paste") if answer.too_long else answer.address
 
 

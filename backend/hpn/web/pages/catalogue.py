@@ -1,4 +1,4 @@
-"""The catalogue to read: one page for all gears, one for each, and the way to a gear by any spelling of its name."""
+"""Pages of the catalogue: all gears, each gear, and the search of a gear by any spelling of its name."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -39,15 +39,15 @@ COLUMNS = (
     "dynamic_radial_load_N",
     "dynamic_axial_load_N",
 )
-"""Figures of the table of all gears."""
+"""Figures in the table of all gears."""
 
 GEAR = "gear"
-"""Column that the table is sorted by at first."""
+"""Column that sorts the table by default."""
 
 
 @dataclass(frozen=True, slots=True)
 class SortHead:
-    """Head of a column: its figure, the address that sorts by it, and how it is sorted now, blank for not."""
+    """Head of a column: its figure, the address that sorts by it, and its present order, blank if unsorted."""
 
     field: str
     address: str
@@ -56,7 +56,7 @@ class SortHead:
 
 @dataclass(frozen=True, slots=True)
 class Filter:
-    """A link that shows only some gears, or again all of them."""
+    """Link that shows only some gears, or all of them again."""
 
     text: str
     address: str
@@ -64,11 +64,11 @@ class Filter:
 
 
 def show_catalogue(request: Request) -> Response:
-    """All gears in one table, or those of some sizes or ratios; `find` leads to the gear that it names."""
+    """Page with all gears in a table, or those of a size or ratio; `find` redirects to the named gear."""
     catalogue: Catalogue = request.app.state.catalogue
     if find := request.query_params.get("find", "").strip():
-        return RedirectResponse(onward(f"/catalogue/{_path(find)}"), 303)
-    # Of a selection that is handed on, size and ratio are what it asks for.
+        return RedirectResponse(onward(f"/catalogue/{quote(find[:60], safe='')}"), 303)
+    # In a carried selection `size` and `i` are its requirements.
     names = ("only_size", "only_i") if carried_pairs() else ("size", "i")
     size, ratio = (request.query_params.get(name, "") for name in names)
     size = canonical_size(size)
@@ -91,7 +91,7 @@ def show_catalogue(request: Request) -> Response:
 
 
 def _groups(gears: Sequence[Gear], sort: str) -> list[list[Gear]]:
-    """Gears size by size, else all of them in the order of a column; a gear without its figure comes last."""
+    """Gears grouped by size, or all in the order of a column; gears without the figure come last."""
     field, falls = sort.removeprefix("-"), sort.startswith("-")
     if field in COLUMNS:
         valued = [gear for gear in gears if getattr(gear, field) is not None]
@@ -112,7 +112,7 @@ def _filter(text: str, active: bool, query: Mapping[str, str], name: str) -> Fil
 
 
 def show_gear(request: Request) -> Response:
-    """The page of a gear; another spelling of its designation leads to it."""
+    """Page of a gear; another spelling of its designation redirects to it."""
     catalogue: Catalogue = request.app.state.catalogue
     name = request.path_params["designation"]
     gear = catalogue.find(name)
@@ -143,7 +143,7 @@ def show_gear(request: Request) -> Response:
 
 
 def _unknown(request: Request, name: str) -> Response:
-    """404 that offers what there is: the gears of that size or ratio, else all sizes."""
+    """Page with status 404 that offers the gears of that size, else all sizes."""
     catalogue: Catalogue = request.app.state.catalogue
     designation = canonical_designation(name)
     size = catalogue.find_size(designation.split("-")[1] if designation else name)
@@ -152,7 +152,7 @@ def _unknown(request: Request, name: str) -> Response:
 
 
 def find_gear(request: Request) -> Response:
-    """From the field that takes a gear by any spelling to that gear in the selection, with everything else as it is."""
+    """Redirect from the gear field, which takes any spelling, to the selection with this gear and its other inputs."""
     query = request.query_params
     pairs = pairs_of(query_part(query.get("link", "")))
     gear = request.app.state.catalogue.find(query.get("gear", ""))
@@ -163,18 +163,14 @@ def find_gear(request: Request) -> Response:
 
 
 def _use(gear: Gear, order: OrderingCode) -> str:
-    """Selection with this gear in view: the reader's own, or a blank one for its size and ratio."""
+    """Address of a selection that shows this gear: the carried one, or a blank one for its size and ratio."""
     if carried_pairs():
         return onward("/", gear=gear.designation, **order.labels)
     return f"/?T=&n=&t=&i={gear.ratio}&size={gear.size}{query_of(order.labels)}"
 
 
-def _path(text: str) -> str:
-    return quote(text[:60], safe="")
-
-
 async def robots(request: Request) -> Response:
-    """Rules for search engines: they may read calculator and catalogue, not saved selections or the API."""
+    """Rules for search engines: they may read calculator and catalogue, but not saved selections or the API."""
     return PlainTextResponse("User-agent: *\nDisallow: /selections\nDisallow: /api/\nDisallow: /paste\n")
 
 

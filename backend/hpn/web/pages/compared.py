@@ -1,4 +1,4 @@
-"""Two saved selections side by side: what was asked, what came of it, and where they differ."""
+"""Two saved selections side by side: inputs, results, and differences."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -28,25 +28,25 @@ from hpn.web.pages.saved import result_of
 from hpn.web.pages.saving import REASON
 
 MOST_ROWS = 50
-"""Phases or moves that differ of which so many are shown."""
+"""Maximum of differing phases or moves that are shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class SavedSide:
-    """One of the two as saved, and the gear that its page shows first."""
+    """Saved selection, and its result for the gear that its page shows first."""
 
     saved: SavedSelection
     result: Result
 
     @property
     def chosen(self) -> Candidate:
-        """That gear, as it was judged."""
+        """Candidate that the selection's page shows first."""
         return self.result.chosen
 
 
 @or_reason(REASON)
 async def compare_selections(request: Request) -> Response:
-    """Two saved selections side by side; `id` twice, as a form with boxes sends it, leads to `a` and `b`."""
+    """Page of two saved selections side by side; `id` twice, from a form with boxes, redirects to `a` and `b`."""
     query = request.query_params
     marked = query.getlist("id")
     if len(marked) == 2:
@@ -92,7 +92,7 @@ def _compared(a: SavedSide, b: SavedSide) -> dict[str, Any]:
 
 
 def _inputs(one: Account, other: Account) -> list[Row]:
-    """Inputs beside moves and phases that differ."""
+    """Differing inputs other than moves and phases."""
     if one.application is None or other.application is None:
         return []
     sides = ([*each.loads, *each.requirements, *each.mechanism] for each in (one, other))
@@ -100,7 +100,7 @@ def _inputs(one: Account, other: Account) -> list[Row]:
 
 
 def _first(rows: Iterable[NumberedRow]) -> list[NumberedRow]:
-    """As many rows as are shown, and one to tell that there are more."""
+    """Rows to show, plus one if there are more."""
     return list(islice(rows, MOST_ROWS + 1))
 
 

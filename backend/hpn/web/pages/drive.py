@@ -1,9 +1,10 @@
-"""The motor behind the gear that the page looks at: what its torques leave out, and which motors and gears fit."""
+"""Motor of the gear shown on the page: omissions of its torques, and fitting motors and gears."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from hpn.account.readings import assumed_of, thermal_of_candidate
 from hpn.application import Application, Motor
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
@@ -19,12 +20,12 @@ from hpn.web.form.linked import LONGEST_LINK
 from hpn.words.wording import N_, Sentence
 
 LISTED_AT_ONCE = 25
-"""Motors that fit of which the page shows the use."""
+"""Fitting motors that the page lists at first."""
 
 
 @dataclass(frozen=True)
 class DriveView:
-    """A gear under an application with a motor, or without one as long as none is chosen."""
+    """Gear under an application with a motor, or without one until a motor is chosen."""
 
     application: Application
     gear: Gear
@@ -35,54 +36,66 @@ class DriveView:
 
     @cached_property
     def motor(self) -> Motor | None:
-        """The motor that is asked for, its figures those of the list where it is named."""
+        """Required motor; a named motor has the figures of the list."""
         return with_listed_motor(self.application, self.catalogue).requirements.motor
 
     @property
     def is_told(self) -> bool:
-        """True where torques are drawn: a motor is asked for, a motion given, or there is a list to choose from."""
+        """True if torques are drawn: a motor is required, a motion is given, or there is a list of motors."""
         return bool(self.motor or self.application.duty_cycle.motion or self.catalogue.motors)
 
     @cached_property
     def uses(self) -> Sequence[MotorUse]:
-        """The user's motors on the gear, best first."""
+        """Listed motors on the gear, best first."""
         return motors_on(self.application, self.gear, self.catalogue)
 
     @property
     def fitting(self) -> list[MotorUse]:
-        """Those that fit."""
+        """Motors that fit."""
         return [use for use in self.uses if use.fits]
 
     @property
     def nearest(self) -> MotorUse | None:
-        """The nearest miss."""
+        """Nearest miss; None if all motors fit."""
         return next((use for use in self.uses if not use.fits), None)
 
     @property
     def without_inertia(self) -> int:
-        """Number of motors that an inertia ratio leaves out, as their inertia is not known."""
+        """Number of motors that a required inertia ratio excludes, as their inertia is unknown."""
         if not asks_inertia_ratio(self.application):
             return 0
         return sum(motor.inertia_kgm2 is None for motor in self.catalogue.motors)
 
     def is_chosen(self, use: MotorUse) -> bool:
-        """True for the motor that is asked for."""
+        """True for the required motor."""
         return self.motor is not None and self.motor.designation == use.motor.designation
 
     def link(self, use: MotorUse) -> str:
-        """Link of the application with a motor of the list, blank for one that is too long to stand for each motor."""
+        """Link of the application with a listed motor; blank for a link too long to repeat for each motor."""
         link = self.links(with_motor(self.application, use.motor))
         return link if len(link) <= LONGEST_LINK else ""
 
     @property
+    def assumed(self) -> Sentence | None:
+        """Assumption on the motor's torque between its known figures; None without a motor or figures."""
+        known = self.motor and (self.motor.curve or self.motor.rated_torque_Nm or self.motor.peak_torque_Nm)
+        return assumed_of(self.motor) if known else None
+
+    @property
+    def thermal(self) -> Sentence | None:
+        """Sentence with both rules of the motor's thermal load on the gear; None without a torque curve."""
+        candidate = self.selection.candidate(self.gear.designation)
+        return thermal_of_candidate(candidate) if candidate else None
+
+    @property
     def speed_limit_rpm(self) -> float | None:
-        """Speed to set in the drive: the smaller of what gear and motor may run at, as far as they are known."""
-        of_motor = self.motor.maximum_speed_rpm if self.motor else None
-        return min((n for n in (self.gear.maximum_input_speed_rpm, of_motor) if n is not None), default=None)
+        """Speed limit for the drive in rpm: the smaller known one of gear and motor; None if both are unknown."""
+        speeds = (self.gear.maximum_input_speed_rpm, self.motor.top_speed_rpm if self.motor else None)
+        return min((n for n in speeds if n is not None), default=None)
 
     @property
     def error_parts(self) -> list[tuple[str, float]]:
-        """Parts that add up to the position error in arcmin by their names; none where one is not published."""
+        """Names and values of the parts of the position error in arcmin; empty if one is not published."""
         gear, (lowest, highest) = self.gear, (torque.item() for torque in self._duty.torque_range_Nm)
         accuracy, backlash, K3 = (
             gear.transmission_accuracy_arcmin,
@@ -98,13 +111,13 @@ class DriveView:
 
     @property
     def shortest_ramp_s(self) -> float | None:
-        """Shortest ramp of a motion; None where phases are typed."""
+        """Shortest ramp of a motion in s; None for phases."""
         motion = self.application.duty_cycle.motion
         return min((move.shortest_ramp_s for move in motion.moves if move.way), default=None) if motion else None
 
     @property
     def stop_speed_rpm(self) -> float:
-        """Output speed at the command of an emergency stop."""
+        """Output speed in rpm at the command of an emergency stop."""
         return float(self._duty.stop_speed_rpm.item())
 
     @cached_property
@@ -113,12 +126,12 @@ class DriveView:
 
     @property
     def sizes(self) -> list[SizeWithMotor]:
-        """Gears that fit with the motor, by size."""
+        """Gears that fit together with the motor, by size."""
         return ratios_with_motor(self.selection)
 
     @property
     def left_out(self) -> list[Sentence]:
-        """Notes on torques at the motor on the gear: their basis, and what they leave out."""
+        """Notes on torques at the motor with this gear: their basis and their omissions."""
         return [
             self._efficiency(BY_CURVE, known=self.gear.designation in self.catalogue.efficiency),
             on_motor_torques(self.selection.notices),
@@ -126,7 +139,7 @@ class DriveView:
 
     @property
     def left_out_of_all(self) -> list[Sentence]:
-        """The same of every gear."""
+        """Notes on torques at the motor with any gear: their basis and their omissions."""
         curves = N_("η from your efficiency curves; 1 for a gear that has none, a lower bound.")
         return [
             self._efficiency(curves, known=bool(self.catalogue.efficiency)),

@@ -1,4 +1,4 @@
-"""A fleet as one HTML file: what its page shows, with styles and a script inside."""
+"""Report of a fleet as one HTML file with styles and a script inside."""
 
 from collections.abc import Iterable
 from contextvars import copy_context
@@ -26,9 +26,9 @@ STYLE, SCRIPT = "report.css", "fleet-report.js"
 
 
 def report_of(listing: Listing, name: str, catalogue: Catalogue, base: str = "", language: str = "en") -> str:
-    """The file in a language.
+    """HTML file in a language.
 
-    `base` is the address of the service that its links lead to, blank where none is known.
+    `base` is the address of the service for its links, blank if unknown.
     """
     rows, summary = rows_of(listing.answers), listing.summary
     top = foremost(rows) if len(rows) == summary.axes else None
@@ -52,17 +52,17 @@ def _sentence(reader: Reader, **values: Any) -> str:
 
 
 Placed = tuple[int, str, Application]
-"""Place of an axis in its list, its name, and what it asks."""
+"""Place of an axis in its list, its name, and its application."""
 
 
 def links_of(axes: Iterable[Placed], base: str = "") -> dict[int, str]:
-    """Link of each axis with its name as title, where that can be one; one that is too long for an address has none."""
+    """Links of axes by their places, with the name as title if valid; without links too long for an address."""
     links = ((place, to_link(application) + _titled(name)) for place, name, application in axes)
     return {place: base + link for place, link in links if len(link) <= MAXIMUM_QUERY_BYTES}
 
 
 def allowed_of(axes: Iterable[Placed]) -> dict[int, float]:
-    """Utilisation that an axis may reach, for those that ask for less than 1."""
+    """Permitted utilisation by place, for axes that require less than 1."""
     bounds = ((place, application.requirements.utilisation) for place, _, application in axes)
     return {place: allowed for place, allowed in bounds if allowed < 1}
 
@@ -73,10 +73,10 @@ def _titled(axis: str) -> str:
 
 def _environment() -> Environment:
     state = State()
-    state.assets = Assets(DIST, {})  # what a page asks the service for stands in the file itself
+    state.assets = Assets(DIST, {})  # the file itself contains all assets
     return environment(state)
 
 
 def _inlined(name: str) -> Markup:
     assets = Assets.load()
-    return Markup((assets.folder / assets.manifest[name]).read_text(encoding="utf-8"))
+    return Markup(assets.text(assets.folder / assets.manifest[name]).decode())

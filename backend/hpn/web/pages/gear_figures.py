@@ -1,4 +1,4 @@
-"""The page of a gear beside its own figures: those of the whole series, and files for missing ones."""
+"""Content of a gear's page beside its own figures: figures of the whole series, and files for missing ones."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from hpn.words.wording import N_
 
 @dataclass(frozen=True, slots=True)
 class SupplementFile:
-    """File of a supplement that would give what is missing: its name, its header, and rows to fill in."""
+    """File of a supplement for missing figures: its name, its header, and rows to fill in."""
 
     name: str
     header: str
@@ -30,12 +30,12 @@ SERIES: Mapping[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
     ),
     "Storage": ((N_("Storage temperature"), ("storage_temperature_minimum", "storage_temperature_maximum")),),
 }
-"""Figures of the whole series beside what the handbook says on a topic: what they are, and their names."""
+"""Figures of the whole series by topic of the handbook: titles, and names in the catalogue."""
 
 
 @dataclass(frozen=True, slots=True)
 class SeriesLine:
-    """A figure, range or text of the whole series."""
+    """Figure, range or text of the whole series."""
 
     name: str
     values: tuple[float, ...]
@@ -56,7 +56,7 @@ def series_figures(catalogue: Catalogue, topic: str) -> list[SeriesLine]:
 
 
 def supplements_for(gear: Gear) -> list[SupplementFile]:
-    """Files that would fill the figures that are missing of a gear."""
+    """Files for the missing figures of a gear."""
     missing = {name for name in FIGURES if getattr(gear, name) is None}
     files = []
     for table in TABLES:

@@ -1,4 +1,4 @@
-"""Map of sizes and ratios: every gear of a catalogue by its largest utilisation."""
+"""Map of sizes and ratios: each gear of a catalogue by its largest utilisation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from hpn.words.wording import Sentence
 
 @dataclass(frozen=True)
 class MapCell:
-    """One gear in the map of sizes and ratios; `asked` tells whether the ratio and size wishes include it."""
+    """Gear in the map of sizes and ratios; `asked` is True if the required sizes and ratios include it."""
 
     gear: Gear
     candidate: Candidate
@@ -20,7 +20,7 @@ class MapCell:
 
     @property
     def level(self) -> str:
-        """Step of the scale: reserve of a gear that passes, else one for failed and one for a gear without ratings."""
+        """Step of the scale: reserve of a suitable gear, `over` for a failed one, `unknown` for one without ratings."""
         torque = self.candidate.check("average_torque")
         if self.candidate.status == "unrated" or (torque and torque.status == "not_rated"):
             return "unknown"
@@ -30,16 +30,16 @@ class MapCell:
 
     @property
     def unrated(self) -> Sentence:
-        """Sentence on a gear without ratings, whatever its other checks say."""
+        """Sentence on a gear without ratings, independent of its other checks."""
         return Sentence(REASONS["unrated"], {"name": f"HPN-{self.gear.size}"})
 
 
 GearMap = tuple[tuple[int, tuple[MapCell | None, ...]], ...]
-"""Ratios, each with its cells in the order of the sizes; None for a gear that is not made, or not judged."""
+"""Ratios, each with its cells in the order of the sizes; None for a gear that is not made or not judged."""
 
 
 def map_of(selection: Selection, candidates: Mapping[str, Candidate], catalogue: Catalogue) -> GearMap:
-    """Map of the gears that were judged, by designation."""
+    """Map of the judged gears; `candidates` are by designation."""
     names = {candidate.designation for candidate in selection.candidates}
     gears = {(gear.ratio, gear.size): gear for gear in catalogue.gears}
 

@@ -1,4 +1,4 @@
-"""Additions of the page to a verdict: reserves, the remedy to try out, and gears side by side."""
+"""Additions of the page to a verdict: reserves, the remedy to try, and gears side by side."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -13,16 +13,16 @@ from hpn.engine.selection import Selection
 from hpn.explain.comparison import MOST_PINS, RowGroup, groups_of, lighter_miss, undominated
 from hpn.links.writer import to_link
 from hpn.web.form.form import Form
-from hpn.web.form.given import FieldProblem
+from hpn.web.form.query import FieldProblem
 from hpn.words.wording import N_, Sentence
 
 
 @dataclass(frozen=True)
 class Insight:
-    """Reserves, remedy and neighbours of the chosen gear, each worked out when a section asks for it.
+    """Reserves, remedy and neighbours of the chosen gear, each calculated when a section needs it.
 
-    `everything` holds every gear of the catalogue by designation; `pins` are the gears that the reader pinned, and
-    `links` makes the address of the same page with another application.
+    `everything` holds all gears of the catalogue by designation; `pins` are the gears that the reader pinned; `links`
+    makes the address of the same page with another application.
     """
 
     application: Application
@@ -35,21 +35,21 @@ class Insight:
 
     @property
     def same_life(self) -> str:
-        """Link that asks of the output bearing the life that is asked of the gear, as L10."""
+        """Link with the gear's required life as required L10 of the output bearing."""
         load = self.application.loads or OutputLoad()
         lasting = load.model_copy(update={"life_h": self.application.requirements.life_h, "life_basis": "L10"})
         return self.links(self.application.model_copy(update={"output_load": lasting}))
 
     @property
     def at_centre(self) -> str:
-        """Link of the application with its loads at the shaft's centre and along its axis."""
+        """Link of the application with its loads at the shaft's centre and along the shaft's axis."""
         load = self.application.loads or OutputLoad()
         placed = load.model_copy(update={"radial_position_mm": None, "axial_radius_mm": 0.0})
         return to_link(self.application.model_copy(update={"output_load": placed}))
 
     @cached_property
     def columns(self) -> tuple[Account, ...]:
-        """The gears side by side: the chosen one, and the others that are pinned or else the one that comes next."""
+        """Accounts of the gears side by side: the chosen one, and the pinned ones, or without pins the next one."""
         candidates = [self.chosen, *(self.everything[pin] for pin in self.pins if pin != self.chosen.designation)]
         if len(candidates) == 1 and (second := self._second()):
             candidates.append(second)
@@ -57,16 +57,16 @@ class Insight:
 
     @property
     def groups(self) -> list[RowGroup]:
-        """The rows of the comparison."""
+        """Rows of the comparison."""
         return groups_of(self.columns)
 
     @cached_property
     def undominated(self) -> frozenset[str]:
-        """Suitable gears that no other one beats."""
+        """Suitable gears that no other gear dominates."""
         return undominated(self.selection.candidates, self.catalogue)
 
     def _second(self) -> Candidate | None:
-        """The gear to compare with where no other is pinned: the nearest smaller miss, else the next in line."""
+        """Gear to compare with if none is pinned: the foremost unless chosen, else the lighter miss, else the next."""
         lighter = lighter_miss(self.selection, self.selection.selected, self.catalogue.by_designation)
         others = [lighter] if lighter else []
         others += [candidate for candidate in self.selection.candidates if candidate.status != "unrated"]
@@ -76,17 +76,17 @@ class Insight:
 
     @property
     def full(self) -> bool:
-        """True where no more gears can be pinned."""
+        """True if no more gears can be pinned."""
         return len(self.pins) >= MOST_PINS
 
 
 def tail_of(pins: Sequence[str]) -> str:
-    """Query of some pins."""
+    """Query of pins."""
     return "".join(f"&pin={quote(pin)}" for pin in pins)
 
 
 def checked_pins(form: Form, catalogue: Catalogue) -> Form:
-    """The form with its pins by their canonical names, each once; what can't be pinned becomes a problem."""
+    """Form with its pins by their canonical names, each once; unknown or excess pins become problems."""
     problems = [
         FieldProblem("pin", None, Sentence(N_("{gear} is not a gear of the catalogue"), {"gear": pin[:40]}))
         for pin in form.pins[: MOST_PINS + 1]

@@ -1,6 +1,6 @@
-"""The page of a machine, which is saved, listed, renamed and deleted there.
+"""Page of a machine, where it is saved, renamed and deleted.
 
-It is kept for a day, and for good once it is saved with its title block: the project of a machine.
+A machine is kept for a day, and permanently once it is saved with its title block.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ from hpn.documents.revision import SAVED, decode, is_label
 from hpn.links.labels import FIELDS, TITLE_BLOCK
 from hpn.store import Machine, RevisionDraft, StoreUnavailableError
 from hpn.web.columns import revision_of, thawed
-from hpn.web.door.access import ADMIN, admit
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.conditions import require_done
 from hpn.web.door.hosts import require_same_origin
@@ -33,7 +33,7 @@ from hpn.web.freezing import revision
 from hpn.web.machines import FEW_AXES, require_seen
 from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.machine_editing import OF_MANY, Editing, opened_common
-from hpn.web.pages.machine_rows import opened
+from hpn.web.pages.machine_rows import row_details
 from hpn.web.pages.machine_since import Since, since_of
 from hpn.web.pages.machine_view import ADDRESS, REASON, SHOWN, Chosen, MachineView
 from hpn.web.pages.rendering import or_reason, page, reason
@@ -49,11 +49,11 @@ MEDIA_TYPES = {
     "csv": "text/csv; charset=utf-8",
     "parquet": "application/vnd.apache.parquet",
 }
-"""Formats of the answers in the order in which they are offered: what keeps a text a text comes first."""
+"""Formats of the answers in the order of the offer: formats that keep texts as texts come first."""
 
 CHANGES_ON_PAGE = 100
 OF_WORST_CASE = ("uw", "ot")
-"""Common values that say how gears are judged over tolerances, which stand beside these."""
+"""Common values for the judgement of gears over tolerances; the page shows them beside the tolerances."""
 
 SAVED_MEANWHILE = N_("This machine has since been saved under other names. Open it again, then rename it.")
 GONE = N_("There is no such machine. An unsaved machine is kept for a day.")
@@ -64,17 +64,17 @@ GONE = N_("There is no such machine. An unsaved machine is kept for a day.")
 
 @dataclass(frozen=True, slots=True)
 class TitleForm:
-    """The title block of a form that saves, as it was filled in."""
+    """Title block of a form that saves, as filled in."""
 
     labels: Mapping[str, str]
 
     def messages(self, name: str, index: int | None = None) -> list[Sentence]:
-        """Messages beside a field."""
+        """Messages for a field."""
         return list(faults_of(self.labels[name]))
 
     @property
     def is_sound(self) -> bool:
-        """True where nothing is wrong."""
+        """True if no field has a fault."""
         return not any(self.messages(name) for name in self.labels)
 
 
@@ -83,12 +83,12 @@ EMPTY = TitleForm(dict.fromkeys(TITLE_BLOCK, ""))
 
 @or_reason(REASON)
 async def show(request: Request) -> Response:
-    """A machine: counts, and its axes as the address filters and sorts them; `edit=common` opens its common values.
+    """Page of a machine: counts, and axes filtered and sorted by the address; `edit=common` opens its common values.
 
-    Where a key is needed to change it, `edit` is the step that asks for the key.
+    If a key is needed for changes, `edit` is the step that asks for it.
     """
     saved = await _found(request)
-    require_key_to_edit(request, saved)
+    request.app.state.gate.require_key_to_edit(request, saved.owner)
     if label := request.query_params.get("revision"):
         return await _frozen(request, saved, label)
     editing = opened_common(saved) if request.query_params.get("edit") == "common" else Editing()
@@ -96,17 +96,18 @@ async def show(request: Request) -> Response:
 
 
 async def shown(request: Request, saved: Machine, status: int, form: TitleForm, editing: Editing) -> Response:
-    """The page of a machine with the form that saves it, and with what is changed of it."""
+    """Page of a machine with the form that saves it, and with a change that is being edited."""
     latest = await request.app.state.store.revisions(saved.id) if saved.revisions else []
     view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params))
     today = await _today(request, saved)
-    values = {"form": form, "today": today, "editing": editing, "may_change": may_change(request, saved)}
-    values |= {"line": None, "since": await since_of(request, saved, latest)} | next_revision(latest)
+    may_change = request.app.state.gate.may_change(request, saved.owner)
+    values = {"form": form, "today": today, "editing": editing, "may_change": may_change}
+    values |= {"line": None, "since": await since_of(request, saved, latest, view.chosen.since)} | next_revision(latest)
     return await compute(request, "pages", _page, request, view, status, values)
 
 
 async def _frozen(request: Request, saved: Machine, label: str) -> Response:
-    """The page of a machine as a revision has it, which nobody changes."""
+    """Read-only page of a machine in the state of a revision."""
     line, content = await revision(request, saved.id, label)
     catalogue: Catalogue = request.app.state.catalogue
     if line.catalogue_version != catalogue.version:
@@ -116,17 +117,6 @@ async def _frozen(request: Request, saved: Machine, label: str) -> Response:
     view = MachineView(machine, catalogue, replace(Chosen.of(request.query_params), revision=line.label))
     values = {"form": EMPTY, "today": None, "editing": Editing(), "may_change": False, "line": line, "since": None}
     return await compute(request, few, _page, request, view, 200, values)
-
-
-def may_change(request: Request, saved: Machine) -> bool:
-    """True for a reader whose key may change a machine; on a service without keys for everybody."""
-    return not request.app.state.gate.has_keys or request.state.api_key in (ADMIN, saved.owner or ADMIN)
-
-
-def require_key_to_edit(request: Request, saved: Machine) -> None:
-    """Have `edit` in an address ask for the key, where one is needed to change a machine: Problem 401 and 403."""
-    if "edit" in request.query_params and not may_change(request, saved):
-        request.app.state.gate.require_owner(request, saved.owner)
 
 
 def _page(request: Request, view: MachineView, status: int, values: Mapping[str, Any]) -> Response:
@@ -139,7 +129,7 @@ def _page(request: Request, view: MachineView, status: int, values: Mapping[str,
         status,
         saved=view.machine,
         view=view,
-        opened=opened(view, rows),
+        details=row_details(view, rows),
         shown=SHOWN,
         engine_version=ENGINE_VERSION,
         catalogue_version=request.app.state.catalogue.version,
@@ -156,7 +146,7 @@ def _page(request: Request, view: MachineView, status: int, values: Mapping[str,
 
 
 async def _today(request: Request, saved: Machine) -> list[Any] | None:
-    """Axes that today's engine and catalogue answer otherwise; None where these are the same."""
+    """Axes with other answers by today's engine and catalogue; None if both are unchanged."""
     catalogue = request.app.state.catalogue
     versions = {(axis.answer["engine_version"], axis.answer["catalogue_version"]) for axis in saved.items}
     if versions <= {(ENGINE_VERSION, catalogue.version)}:
@@ -180,7 +170,7 @@ async def _found(request: Request) -> Machine:
 
 
 async def download(request: Request) -> Response:
-    """The answers as a file."""
+    """File of the answers."""
     suffix = request.scope["path"].rpartition(".")[2]
     try:
         saved = await _found(request)
@@ -201,7 +191,7 @@ async def download(request: Request) -> Response:
 
 
 def _file(saved: Machine, suffix: str, reader: Reader) -> Callable[[], bytes]:
-    """The call that makes a file."""
+    """Call that makes a file."""
     from hpn.web.pages import machine_answers
     from hpn.web.pages.answer_files import file_of
 
@@ -213,7 +203,7 @@ def _file(saved: Machine, suffix: str, reader: Reader) -> Callable[[], bytes]:
 
 @or_reason(REASON)
 async def save(request: Request) -> Response:
-    """Saves a machine that was calculated, with its title block, and leads back to its page."""
+    """Save a calculated machine with its title block, and redirect to its page."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
     form = TitleForm({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
@@ -229,7 +219,7 @@ async def save(request: Request) -> Response:
 
 
 def _first_revision(saved: Machine, names: Mapping[str, str | None]) -> RevisionDraft:
-    """The machine as it is saved, under its revision where that can be a label."""
+    """First revision of a machine; its label is the typed revision if valid, else SAVED with the typed text as note."""
     text = names["revision"]
     label = text if text and is_label(text) else SAVED
     named = replace(saved, title=names["title"], reference=names["reference"], author=names["author"])
@@ -237,21 +227,21 @@ def _first_revision(saved: Machine, names: Mapping[str, str | None]) -> Revision
 
 
 async def _require_same(request: Request, names: Mapping[str, str | None]) -> None:
-    """Raise Problem 412 unless a machine is saved under these names: a form that is sent twice saves once."""
+    """Raise Problem 412 unless the machine is saved under the same names: a form that is sent twice saves once."""
     saved = await _found(request)
     if any(getattr(saved, name) != text for name, text in names.items()):
         raise Problem(412, SAVED_MEANWHILE)
 
 
 async def lead_to_list(request: Request) -> Response:
-    """Leads from the address that the list had before."""
+    """Redirect from the former address of the list."""
     query = request.scope["query_string"]
     return RedirectResponse(ADDRESS + (f"?{quote(query, safe=punctuation)}" if query else ""), 308)
 
 
 @or_reason(REASON)
 async def rename(request: Request) -> Response:
-    """Gives a saved machine another title and reference, and leads back to its page."""
+    """Rename a saved machine (title and reference), and redirect to its page."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
     saved, version = await _own(request), version_of(fields)
@@ -264,13 +254,13 @@ async def rename(request: Request) -> Response:
 
 @or_reason(REASON)
 async def ask_to_delete(request: Request) -> Response:
-    """The page that asks before a machine goes for good."""
+    """Page that asks for confirmation before a machine is deleted."""
     return await compute(request, "pages", page, request, "machine_delete.html", saved=await _own(request))
 
 
 @or_reason(REASON)
 async def delete(request: Request) -> Response:
-    """Deletes a machine for good, and leads to the list."""
+    """Delete a machine permanently, and redirect to the list."""
     require_same_origin(request)
     given = "content-type" in request.headers  # a script may send no body
     version = version_of(dict(pairs_of(await read_form(request)))) if given else None
@@ -283,14 +273,12 @@ async def delete(request: Request) -> Response:
 
 async def _own(request: Request) -> Machine:
     saved = await _found(request)
-    gate = request.app.state.gate
-    if gate.has_keys:
-        gate.require_owner(request, saved.owner)
+    request.app.state.gate.require_owner(request, saved.owner)
     return saved
 
 
 async def lead_on(request: Request) -> Response:
-    """Leads from the address of an older link to today's; method, body and query stay."""
+    """Redirect from an older address to today's; method, body and query stay."""
     path, query = request.scope["path"].removeprefix(OLDER_ADDRESS), request.scope["query_string"]
     address = ADDRESS + quote(path) + (f"?{quote(query, safe=punctuation)}" if query else "")
     return RedirectResponse(address, 308)

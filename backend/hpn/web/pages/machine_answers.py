@@ -1,4 +1,4 @@
-"""A machine that was sized, on its way into the store and out of it. Arrow is imported by this module."""
+"""Stored answers of a machine as a table, and their differences from today's. This module imports Arrow."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -9,12 +9,14 @@ import pyarrow as pa
 from hpn.catalogue import Catalogue
 from hpn.documents.answers import AxisAnswer, AxisFault, AxisQuestion, answers
 from hpn.explain.comparison import is_same
+from hpn.files.machine.words import fault_of
 from hpn.fleet.columns import AXIS
 from hpn.fleet.faults import Reason
 from hpn.fleet.listing import NEAREST
 from hpn.fleet.outcome import FAULTS, answer_fields, located
-from hpn.store import Machine, SavedAxis
+from hpn.store import Machine
 from hpn.web.columns import answer_in, common_of, resolved
+from hpn.words.wording import Sentence
 
 COMPARED = ("selected", "governing_check", "utilisation", "suitable")
 
@@ -22,16 +24,13 @@ COMPARED = ("selected", "governing_check", "utilisation", "suitable")
 def answers_of(machine: Machine) -> pa.Table:
     """Answers of the axes of a machine, with the columns of a listing."""
     fields = [*answer_fields(pa.string()), *NEAREST]
-    table = pa.Table.from_pylist([_cells(axis) for axis in machine.items], pa.schema(fields))
-    return table.drop_columns("error")  # which is what is shown of the reasons
-
-
-def _cells(axis: SavedAxis) -> dict[str, Any]:
-    return {AXIS: axis.name or str(axis.number), **_judged(answer_in(axis.answer))}
+    cells = [{AXIS: axis.name or str(axis.number), **_judged(answer_in(axis.answer))} for axis in machine.items]
+    table = pa.Table.from_pylist(cells, pa.schema(fields))
+    return table.drop_columns("error")  # FAULTS has the reasons instead
 
 
 def _judged(answer: AxisAnswer) -> dict[str, Any]:
-    """Answer of an axis as a listing has it: figures of the selected gear, or the nearest miss where none suits."""
+    """Cells of an axis's answer in a listing: figures of the selected gear, else the nearest miss; faults if open."""
     if answer.status == "open":
         return {FAULTS: msgspec.json.encode(reasons(answer.faults)).decode()}
     brief = {"suitable": answer.suitable, "average_torque_Nm": answer.average_torque_Nm}
@@ -45,31 +44,31 @@ def _judged(answer: AxisAnswer) -> dict[str, Any]:
 
 
 def reasons(faults: Iterable[AxisFault]) -> list[Reason]:
-    """Faults as a listing says them: by the columns of a table."""
+    """Reasons of a listing for faults, by the columns of a table."""
     return [_reason(fault) for fault in faults]
 
 
 def _reason(fault: AxisFault) -> Reason:
     if not fault.pointer:
-        return Reason("", fault.code, fault.told)
-    found = located(0, fault.location, fault.told, fault.code)
-    return Reason(found.column, found.code, found.reason)
+        return Reason("", fault.code, fault.wording)
+    cell = located(0, fault.location, fault.wording, fault.code)
+    return Reason(cell.column, cell.code, cell.reason)
 
 
 # --- Today ------------------------------------------------------------------------------------------------------------
 
 
 class Changed(NamedTuple):
-    """An axis whose answer is another one today, or the reasons why it has none."""
+    """Axis whose answer is different today, or the reasons why it has none."""
 
     axis: str
     saved: dict[str, Any]
     today: dict[str, Any]
-    reasons: Sequence[Reason]
+    reasons: Sequence[Sentence]
 
 
 def changes(machine: Machine, catalogue: Catalogue) -> list[Changed]:
-    """Axes that are answered otherwise today, out of those that had an answer."""
+    """Axes whose answer is different today, among those that had an answer."""
     had = [axis for axis in machine.items if axis.answer["status"] != "open"]
     common = common_of(machine)
     today = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in had], catalogue)
@@ -77,7 +76,7 @@ def changes(machine: Machine, catalogue: Catalogue) -> list[Changed]:
     for axis, now in zip(had, today, strict=True):
         before, after = _compared(answer_in(axis.answer)), _compared(now)
         if _differs(before, after):
-            found.append(Changed(axis.name or str(axis.number), before, after, reasons(now.faults)))
+            found.append(Changed(axis.name or str(axis.number), before, after, [*map(fault_of, now.faults)]))
     return found
 
 

@@ -1,5 +1,5 @@
-"""Changes of a machine from its page: common values, marked axes, copies, removal and undo, each with its effect said
-before. What is changed, and what for, is `hpn.web.edits`, which REST uses, too.
+"""Changes of a machine from its page: common values, marked axes, copies, removal and undo. Values can be tried before,
+which shows the effect alone. The changes themselves are in `hpn.web.edits`, which REST uses, too.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -38,21 +38,21 @@ from hpn.web.edits import (
     plan_undo,
 )
 from hpn.web.form import common as fields
-from hpn.web.form.given import FieldProblem
+from hpn.web.form.query import FieldProblem
 from hpn.web.long_work import EVENTS, CountedAnswer, given_up_at_end
-from hpn.web.machines import FEW_AXES, apply, author_of, editable, found
+from hpn.web.machines import FEW_AXES, apply, author_of, editable, machine_of
 from hpn.web.pages.machine import EMPTY, shown
 from hpn.web.pages.machine_editing import (
     MOST_UNDONE,
     QUANTITY,
+    Command,
     Editing,
-    Sent,
     inherited,
     is_number,
     patch_in,
     values_in,
 )
-from hpn.web.pages.machine_view import ADDRESS, REASON
+from hpn.web.pages.machine_view import ADDRESS, REASON, Chosen
 from hpn.web.pages.rendering import or_reason
 from hpn.words.wording import N_, Sentence
 
@@ -73,53 +73,53 @@ NOT_UNDONE = N_("Not undone: somebody else has changed the same since. The table
 
 @or_reason(REASON)
 async def change(request: Request) -> Response:
-    """Says the effect of a change, or makes it, and shows the machine as it then is; with the count of its axes on the
-    way for who takes events.
+    """Make a change, or show only its effect; page of the machine afterwards. A client that accepts events gets the
+    count of answered axes meanwhile.
     """
     require_same_origin(request)
-    sent = Sent.of(pairs_of(await read_form(request)))
+    command = Command.of(pairs_of(await read_form(request)))
     await editable(request, request.path_params["machine"], [])
     if EVENTS in request.headers.get("accept", ""):
-        return CountedAnswer(request, lambda: or_reason(REASON)(partial(_answered, sent=sent))(request))
+        return CountedAnswer(request, lambda: or_reason(REASON)(partial(_answered, command=command))(request))
     with given_up_at_end():
-        return await _answered(request, sent)
+        return await _answered(request, command)
 
 
-async def _answered(request: Request, sent: Sent) -> Response:
+async def _answered(request: Request, command: Command) -> Response:
     id = request.path_params["machine"]
-    await found(request, id, [], "machine")
+    await machine_of(request, id, [], "machine")
     try:
-        editing = await _changed(request, id, sent)
+        editing = await _changed(request, id, command)
     except OvertakenError as error:
-        editing = await _overtaken(request, id, sent, error)
+        editing = await _overtaken(request, id, command, error)
     except ValidationError as error:
-        told = Sentence("{text}", {"text": Problem.of(error).errors[0].text})
-        editing = Editing(sent, said=told, is_refused=True, past=sent.past)
-    machine = await found(request, id, None, "machine")
+        reason = Sentence("{text}", {"text": Problem.of(error).errors[0].text})
+        editing = Editing(command, message=reason, is_refused=True, past=command.past)
+    machine = await machine_of(request, id, None, "machine")
     status = 409 if editing.overtaken else 422 if editing.is_refused else 200
     return await shown(request, machine, status, EMPTY, editing)
 
 
-async def _changed(request: Request, id: str, sent: Sent) -> Editing:
-    if sent.do == "undo" and sent.past:
-        return await _undone(request, id, sent)
-    if sent.do == "kinds":
-        return await _kinds_taken(request, id, sent)
-    if sent.target == "common":
-        return await _common_changed(request, id, sent)
-    if sent.do == "add":
-        return await _axis_added(request, id, sent)
-    if not sent.seen and not sent.everything:
-        return Editing(sent, said=Sentence(MARK_SOME), is_refused=True, past=sent.past)
-    if sent.do in ("copy", "remove"):
-        return await _set_changed(request, id, sent)
-    return await _axes_changed(request, id, sent)
+async def _changed(request: Request, id: str, command: Command) -> Editing:
+    if command.do == "undo" and command.past:
+        return await _undone(request, id, command)
+    if command.do == "kinds":
+        return await _kinds_taken(request, id, command)
+    if command.target == "common":
+        return await _common_changed(request, id, command)
+    if command.do == "add":
+        return await _axis_added(request, id, command)
+    if not command.seen and not command.everything:
+        return Editing(command, message=Sentence(MARK_SOME), is_refused=True, past=command.past)
+    if command.do in ("copy", "remove"):
+        return await _set_changed(request, id, command)
+    return await _axes_changed(request, id, command)
 
 
 async def _planned(
     request: Request, id: str, make: Callable[[Machine], Plan], *, dry: bool, editing: Editing, past: tuple[str, ...]
 ) -> Editing:
-    """The page after a change, or with its effect alone."""
+    """Content of the page after a change, or with its effect only if `dry`."""
     plans: list[Plan] = []
 
     def made(machine: Machine) -> Change:
@@ -131,38 +131,38 @@ async def _planned(
         await compute(request, "pages" if len(machine.items) <= FEW_AXES else "batches", made, machine)
         return replace(editing, plan=plans[-1], past=past)
     await apply(request, id, made)
-    return Editing(plan=plans[-1], said=Sentence(CHANGED), past=_with(past, plans[-1].undo))
+    return Editing(plan=plans[-1], message=Sentence(CHANGED), past=_with(past, plans[-1].undo))
 
 
 def _with(past: tuple[str, ...], undo: Undo) -> tuple[str, ...]:
     return (*past, packed(msgspec.json.encode(undo)))[-MOST_UNDONE:]
 
 
-async def _axes_changed(request: Request, id: str, sent: Sent) -> Editing:
+async def _axes_changed(request: Request, id: str, command: Command) -> Editing:
     catalogue: Catalogue = request.app.state.catalogue
-    inherits = sent.do == "inherit" and sent.symbol != QUANTITY
-    editing, patch = (Editing(sent), {}) if inherits else patch_in(sent)
+    inherits = command.do == "inherit" and command.symbol != QUANTITY
+    editing, patch = (Editing(command), {}) if inherits else patch_in(command)
     if patch is None:
-        return replace(editing, past=sent.past)
+        return replace(editing, past=command.past)
 
     def make(machine: Machine) -> Plan:
-        axes = _marked(machine, sent)
-        patches = [(axis, inherited(axis, sent.symbol) if inherits else patch) for axis in axes]
+        axes = _marked(machine, command)
+        patches = [(axis, inherited(axis, command.symbol) if inherits else patch) for axis in axes]
         return plan_patches(machine, [(a, p) for a, p in patches if p], catalogue, author_of(request, machine))
 
-    return await _planned(request, id, make, dry=sent.do == "dry", editing=editing, past=sent.past)
+    return await _planned(request, id, make, dry=command.do == "dry", editing=editing, past=command.past)
 
 
-async def _common_changed(request: Request, id: str, sent: Sent) -> Editing:
+async def _common_changed(request: Request, id: str, command: Command) -> Editing:
     catalogue: Catalogue = request.app.state.catalogue
-    form, values = await compute(request, "pages", fields.read, sent.pairs, list(fields.PATHS), current())
-    editing = Editing(sent, common=form, before=sent.before)
+    form, values = await compute(request, "pages", fields.read, command.pairs, list(fields.PATHS), current())
+    editing = Editing(command, common=form, before=command.before)
     if form.problems:
-        return replace(editing, past=sent.past, said=form.problems[0].message, is_refused=True)
-    before = values_in(sent.before)
+        return replace(editing, past=command.past, message=form.problems[0].message, is_refused=True)
+    before = values_in(command.before)
     yours = fields.changed(before, values)
     if not yours:
-        return replace(editing, past=sent.past, said=Sentence(NOTHING_OTHER))
+        return replace(editing, past=command.past, message=Sentence(NOTHING_OTHER))
 
     def make(machine: Machine) -> Plan:
         now = dict(flat(common_of(machine)))
@@ -172,26 +172,26 @@ async def _common_changed(request: Request, id: str, sent: Sent) -> Editing:
         common = Common.model_validate(fields.nested(then)).sent
         return plan_common(machine, common, catalogue, author_of(request, machine))
 
-    return await _planned(request, id, make, dry=sent.do != "apply", editing=editing, past=sent.past)
+    return await _planned(request, id, make, dry=command.do != "apply", editing=editing, past=command.past)
 
 
-async def _kinds_taken(request: Request, id: str, sent: Sent) -> Editing:
-    """The page after a step of fewest kinds was taken."""
-    count, catalogue = dict(sent.pairs).get("count", ""), request.app.state.catalogue
+async def _kinds_taken(request: Request, id: str, command: Command) -> Editing:
+    """Content of the page after a step of fewest kinds."""
+    count, catalogue = dict(command.pairs).get("count", ""), request.app.state.catalogue
 
     def make(machine: Machine) -> Plan:
         return plan_kinds(machine, int(count) if is_number(count) else 0, catalogue, author_of(request, machine))
 
-    return await _planned(request, id, make, dry=False, editing=Editing(sent), past=sent.past)
+    return await _planned(request, id, make, dry=False, editing=Editing(command), past=command.past)
 
 
-async def _set_changed(request: Request, id: str, sent: Sent) -> Editing:
-    """Copies of axes, or axes removed."""
+async def _set_changed(request: Request, id: str, command: Command) -> Editing:
+    """Content of the page after marked axes were copied or removed."""
     undone: list[Undo] = []
 
     def make(machine: Machine) -> Change:
-        axes, by = _marked(machine, sent), author_of(request, machine)
-        if sent.do == "copy":
+        axes, by = _marked(machine, command), author_of(request, machine)
+        if command.do == "copy":
             return plan_copies(machine, axes, by)
         made, undo = plan_removal(machine, axes, by)
         undone.append(undo)
@@ -199,42 +199,42 @@ async def _set_changed(request: Request, id: str, sent: Sent) -> Editing:
 
     numbers = await apply(request, id, make)
     if undone:
-        return Editing(said=Sentence(CHANGED), past=_with(sent.past, undone[-1]))
-    return _more(numbers, sent)
+        return Editing(message=Sentence(CHANGED), past=_with(command.past, undone[-1]))
+    return _more(numbers, command)
 
 
-def _more(numbers: Sequence[int], sent: Sent) -> Editing:
-    """The page after axes were added."""
-    return Editing(said=Sentence(ADDED), added=tuple(numbers), past=_with(sent.past, Undo(added=tuple(numbers))))
+def _more(numbers: Sequence[int], command: Command) -> Editing:
+    """Content of the page after axes were added."""
+    return Editing(message=Sentence(ADDED), added=tuple(numbers), past=_with(command.past, Undo(added=tuple(numbers))))
 
 
-async def _axis_added(request: Request, id: str, sent: Sent) -> Editing:
-    """The page after one more axis: without values of its own, or with those of another."""
-    fields, catalogue = dict(sent.pairs), request.app.state.catalogue
+async def _axis_added(request: Request, id: str, command: Command) -> Editing:
+    """Content of the page after an axis was added: without own values, or with those of another axis."""
+    fields, catalogue = dict(command.pairs), request.app.state.catalogue
     name, number = fields.get("name", "").strip() or None, fields.get("like", "")
 
     def make(machine: Machine) -> Change:
         like = named(machine, [int(number)])[0] if is_number(number) else None
         return plan_addition(machine, name, like, catalogue, author_of(request, machine))
 
-    return _more(await apply(request, id, make, [int(number)] if is_number(number) else []), sent)
+    return _more(await apply(request, id, make, [int(number)] if is_number(number) else []), command)
 
 
-def _marked(machine: Machine, sent: Sent) -> list[SavedAxis]:
-    """Axes that are marked, as they were seen; raises OvertakenError where one was changed or removed since."""
-    if sent.everything:
+def _marked(machine: Machine, command: Command) -> list[SavedAxis]:
+    """Marked axes; raises OvertakenError if one was changed or removed since the page showed it."""
+    if command.everything:
         return list(machine.items)
     there = {axis.number: axis.version for axis in machine.items}
-    if lost := [number for number, version in sent.seen.items() if there.get(number) != version]:
+    if lost := [number for number, version in command.seen.items() if there.get(number) != version]:
         raise OvertakenError(lost)
-    return named(machine, list(sent.seen))
+    return named(machine, list(command.seen))
 
 
-async def _undone(request: Request, id: str, sent: Sent) -> Editing:
-    """The page after the last change was undone."""
+async def _undone(request: Request, id: str, command: Command) -> Editing:
+    """Content of the page after the last change was undone."""
     catalogue: Catalogue = request.app.state.catalogue
     try:
-        undo = msgspec.json.decode(unpacked(sent.past[-1].encode()), type=Undo)
+        undo = msgspec.json.decode(unpacked(command.past[-1].encode()), type=Undo)
     except (msgspec.DecodeError, msgspec.ValidationError):
         raise Problem(422, "past is not what this page has given") from None
     await editable(request, id, [])
@@ -247,42 +247,52 @@ async def _undone(request: Request, id: str, sent: Sent) -> Editing:
     await apply(request, id, make)
     if undo.order:
         await apply(request, id, lambda machine: _in_order(machine, undo.order), [])
-    return Editing(said=Sentence(UNDONE), past=sent.past[:-1])
+    return Editing(message=Sentence(UNDONE), past=command.past[:-1])
 
 
 def _in_order(machine: Machine, order: Sequence[int]) -> Change:
-    """Axes in the order that they had, as far as they are there; those that are new stay behind."""
+    """Change that restores the order of axes that still exist; new axes stay at the end."""
     there = set(machine.order)
     again = [number for number in order if number in there]
     return Change(machine.version, None, order=[*again, *(number for number in machine.order if number not in again)])
 
 
-async def _overtaken(request: Request, id: str, sent: Sent, error: OvertakenError) -> Editing:
-    """The page where somebody else was faster: theirs in the table, yours in the fields."""
-    if sent.do == "undo":
-        return Editing(said=Sentence(NOT_UNDONE), is_refused=True, overtaken=error.numbers or (0,), past=sent.past[:-1])
-    told = Editing(sent, said=Sentence(OVERTAKEN), is_refused=True, overtaken=error.numbers or (0,), past=sent.past)
-    if sent.target != "common":
-        return replace(patch_in(sent)[0], said=told.said, is_refused=True, overtaken=told.overtaken, past=sent.past)
-    machine = await found(request, id, [], "machine")
-    before, now = values_in(sent.before), dict(flat(common_of(machine)))
-    form, values = fields.read(sent.pairs, list(fields.PATHS), current())
+async def _overtaken(request: Request, id: str, command: Command, error: OvertakenError) -> Editing:
+    """Content of the page after somebody else was faster: their values in the table, yours in the fields."""
+    if command.do == "undo":
+        return Editing(
+            message=Sentence(NOT_UNDONE), is_refused=True, overtaken=error.numbers or (0,), past=command.past[:-1]
+        )
+    editing = Editing(
+        command, message=Sentence(OVERTAKEN), is_refused=True, overtaken=error.numbers or (0,), past=command.past
+    )
+    if command.target != "common":
+        return replace(
+            patch_in(command)[0],
+            message=editing.message,
+            is_refused=True,
+            overtaken=editing.overtaken,
+            past=command.past,
+        )
+    machine = await machine_of(request, id, [], "machine")
+    before, now = values_in(command.before), dict(flat(common_of(machine)))
+    form, values = fields.read(command.pairs, list(fields.PATHS), current())
     yours = fields.changed(before, values)
     theirs = tuple(
-        FieldProblem(name, None, Sentence(THEIRS, {"value": _told(name, now)}))
+        FieldProblem(name, None, Sentence(THEIRS, {"value": _value(name, now)}))
         for name, path in fields.PATHS.items()
         if path in yours and now.get(path) not in (before.get(path), yours[path])
     )
     mixed = {path: value for path, value in {**now, **yours}.items() if value is not None}
     form = replace(fields.form_of(mixed, current(), has_tolerances=True), problems=theirs)
-    return replace(told, common=form, before=packed(json_of(now)))
+    return replace(editing, common=form, before=packed(json_of(now)))
 
 
 THEIRS = N_("somebody else has set {value} since")
 
 
-def _told(name: str, values: Mapping[str, Any]) -> str:
-    """A common value as a field shows it."""
+def _value(name: str, values: Mapping[str, Any]) -> str:
+    """Text of a common value in a field; a dash if it is not set."""
     path = fields.PATHS[name]
     if path not in values:
         return "–"
@@ -291,8 +301,9 @@ def _told(name: str, values: Mapping[str, Any]) -> str:
 
 
 async def lead_back(request: Request) -> Response:
-    """Leads to the machine: a change is sent, not opened."""
-    return RedirectResponse(f"{ADDRESS}/{request.path_params['machine']}", 303)
+    """Redirect to the machine with the same axes: the address of changes has no page."""
+    path = f"{ADDRESS}/{request.path_params['machine']}"
+    return RedirectResponse(Chosen.of(request.query_params).address(path), 303)
 
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])

@@ -1,4 +1,4 @@
-"""Form of a change on the page of a machine: what was sent, what it says of values, and what the page says of it."""
+"""Form of a change on the page of a machine: its fields as sent, the values in them, and its state on the page."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,18 +18,18 @@ from hpn.web.form.form import Form
 from hpn.words.wording import N_, Sentence
 
 OF_MANY = ("u", "Lh", "Lb", "fw", "size", "i")
-"""Fields that are set for several axes at once, beside their quantity."""
+"""Fields that can be set for several axes at once, as can their quantity."""
 
 QUANTITY = "quantity"
 MOST_UNDONE = 20
-"""Changes that can be undone, one after the other."""
+"""Number of changes that can be undone, one after the other."""
 
 NO_VALUE = N_("Enter a value, or take the machine’s.")
 
 
 @dataclass(frozen=True, slots=True)
-class Sent:
-    """The form as it was sent. `seen` are the marked axes with the versions that the page showed."""
+class Command:
+    """Fields of the form as sent. `seen` are the marked axes with the versions that the page showed."""
 
     do: str = ""
     target: str = ""
@@ -42,40 +42,40 @@ class Sent:
 
     @classmethod
     def of(cls, pairs: Sequence[tuple[str, str]]) -> Self:
-        """Values of a form's fields; one that can't be is left out."""
-        given = dict(pairs)
+        """Values of a form's fields; malformed marks are left out."""
+        texts = dict(pairs)
         marks = [text.partition(":") for name, text in pairs if name == "axis"]
         seen = {int(n): int(v) for n, _, v in marks if is_number(n) and is_number(v)}
         past = tuple(text for name, text in pairs if name == "past")[-MOST_UNDONE:]
-        chosen = given.get("field", "u")
+        chosen = texts.get("field", "u")
         return cls(
-            given.get("do", ""),
-            given.get("target", ""),
+            texts.get("do", ""),
+            texts.get("target", ""),
             chosen if chosen in (*OF_MANY, QUANTITY) else "u",
             seen,
-            "everything" in given,
-            given.get("before", ""),
+            "everything" in texts,
+            texts.get("before", ""),
             past,
             tuple(pairs),
         )
 
 
 def is_number(text: str) -> bool:
-    """True for a whole number of few digits."""
+    """True for a whole number of at most 9 digits."""
     return text.isascii() and text.isdigit() and len(text) < 10
 
 
 @dataclass(frozen=True)
 class Editing:
-    """A change as the page shows it: its form as sent, effect, problems, and what can be undone."""
+    """Change on the page: its command, effect, problems, and the changes that can be undone."""
 
-    sent: Sent = field(default_factory=Sent)
+    command: Command = field(default_factory=Command)
     common: Form | None = None
     before: str = ""
     many: Form = field(default_factory=lambda: fields.form_of({}, current()))
     quantity: str = ""
     plan: Plan | None = None
-    said: Sentence | None = None
+    message: Sentence | None = None
     is_refused: bool = False
     overtaken: tuple[int, ...] = ()
     added: tuple[int, ...] = ()
@@ -86,39 +86,39 @@ class Editing:
 
 
 def opened_common(machine: Machine) -> Editing:
-    """The form of the common values as they are."""
+    """Opened form with the present common values."""
     values = dict(flat(common_of(machine)))
     return Editing(common=fields.form_of(values, current(), has_tolerances=True), before=packed(json_of(values)))
 
 
 def values_in(carried: str) -> dict[str, Any]:
-    """Common values that a form was opened with; none where it says nothing that can be read."""
+    """Common values that a form was opened with; empty if the text is blank or unreadable."""
     try:
-        found = msgspec.json.decode(unpacked(carried.encode()) or b"{}")
+        values = msgspec.json.decode(unpacked(carried.encode()) or b"{}")
     except msgspec.DecodeError:
         return {}
-    return found if isinstance(found, dict) else {}
+    return values if isinstance(values, dict) else {}
 
 
-def patch_in(sent: Sent) -> tuple[Editing, dict[str, Any] | None]:
-    """Own values to be set, as a merge patch of an axis; None where there is none or it is wrong."""
-    if sent.symbol == QUANTITY:
-        text = dict(sent.pairs).get(QUANTITY, "")
+def patch_in(command: Command) -> tuple[Editing, dict[str, Any] | None]:
+    """Content of the page, and merge patch of the own values to set; None without a valid value."""
+    if command.symbol == QUANTITY:
+        text = dict(command.pairs).get(QUANTITY, "")
         value = read_value(text, "whole") if text.strip() else Sentence(NO_VALUE)
-        editing = Editing(sent, quantity=text)
+        editing = Editing(command, quantity=text)
         if isinstance(value, Sentence):
-            return replace(editing, said=value, is_refused=True), None
+            return replace(editing, message=value, is_refused=True), None
         return editing, {QUANTITY: value}
-    form, values = fields.read(sent.pairs, [sent.symbol], current())
-    editing = Editing(sent, many=form)
+    form, values = fields.read(command.pairs, [command.symbol], current())
+    editing = Editing(command, many=form)
     if form.problems or not values:
-        said = form.problems[0].message if form.problems else Sentence(NO_VALUE)
-        return replace(editing, said=said, is_refused=True), None
+        message = form.problems[0].message if form.problems else Sentence(NO_VALUE)
+        return replace(editing, message=message, is_refused=True), None
     return editing, {"application": fields.nested(values)}
 
 
 def inherited(axis: SavedAxis, name: str) -> dict[str, Any]:
-    """Merge patch by which an axis takes the machine's value of a field."""
+    """Merge patch that makes an axis inherit the machine's value of a field."""
     path = fields.BY_SYMBOL[name][0]
     patch: dict[str, Any] = {}
     part = path.partition(".")[0]

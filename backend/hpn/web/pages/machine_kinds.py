@@ -1,4 +1,4 @@
-"""Fewest kinds of gears of a machine, beside its page: the curve, and the steps that are worth a decision."""
+"""Page of the fewest kinds of gears of a machine: the curve, and the steps that are worth a decision."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -17,21 +17,20 @@ from hpn.web.door.pools import compute
 from hpn.web.door.problems import needs
 from hpn.web.door.visit import current
 from hpn.web.edits import kinds_in
-from hpn.web.machines import found
-from hpn.web.pages.machine import may_change
+from hpn.web.machines import machine_of
 from hpn.web.pages.machine_view import ADDRESS, REASON
 from hpn.web.pages.rendering import or_reason, page
 
 
 class Decision(NamedTuple):
-    """A step with fewer kinds than now for which more mass is paid, or none."""
+    """Step with fewer kinds than now, and its additional mass in kg, which may be 0."""
 
     step: KindsStep
     more_kg: float
 
 
 class KindsView(NamedTuple):
-    """Fewest kinds as the page shows them."""
+    """Fewest kinds for the page."""
 
     found: MachineKinds
     decisions: list[Decision]
@@ -41,13 +40,13 @@ class KindsView(NamedTuple):
 
 @or_reason(REASON)
 async def show_kinds(request: Request) -> Response:
-    """Fewest kinds of a machine."""
-    machine = await found(request, request.path_params["machine"], None, "machine")
+    """Page of a machine's fewest kinds."""
+    machine = await machine_of(request, request.path_params["machine"], None, "machine")
     return await compute(request, "batches", _page, request, machine)
 
 
 def _page(request: Request, machine: Machine) -> Response:
-    values: dict[str, Any] = {"saved": machine, "may_change": may_change(request, machine)}
+    values: dict[str, Any] = {"saved": machine, "may_change": request.app.state.gate.may_change(request, machine.owner)}
     return page(request, "machine_kinds.html", kinds=view_of(machine, request.app.state.catalogue), **values)
 
 
@@ -60,7 +59,7 @@ def view_of(machine: Machine, catalogue: Catalogue) -> KindsView:
 
 
 def _decisions(kinds: MachineKinds) -> list[Decision]:
-    """Steps below the first, but for those that a smaller number of kinds does without more mass."""
+    """Steps below the first, except those that a step with fewer kinds matches without more mass."""
     if not kinds.kinds:
         return []
     now, *fewer = kinds.kinds

@@ -1,40 +1,53 @@
-"""Changes of a machine since its latest revision, beside its page: by the comparison that its revisions have.
+"""Changes of a machine since its latest revision, or another one, by the comparison of revisions.
 
-Up to FEW_AXES axes they stand on the page at once; those of more are asked for by themselves.
+For up to FEW_AXES axes they are part of the machine's page; for more they have their own page.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
-from hpn.documents.revision import NOW
+from hpn.documents.revision import NOW, label_key
 from hpn.files.machine.changes import DifferencesExport
-from hpn.store import Machine, RevisionLine
+from hpn.store import Machine, RevisionLine, SavedAxis
 from hpn.web.door.access import admit
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import needs
 from hpn.web.door.visit import current
-from hpn.web.machines import FEW_AXES, found
+from hpn.web.machines import FEW_AXES, machine_of
 from hpn.web.pages.machine_view import ADDRESS, REASON
 from hpn.web.pages.rendering import or_reason, page
-from hpn.web.pages.revisions_view import Compared, ComparedAxis
-from hpn.web.states import State, catalogues_of, documents_of, states_of
+from hpn.web.pages.revisions_view import MOST_LINES, Compared, ComparedAxis, next_label
+from hpn.web.states import State, catalogues_of, comparison, documents_of, states_of
 from hpn.words.reader import Reader
 
-MOST_SHOWN, MOST_CELLS = 12, 3
-"""Axes and cells of each that stand beside the table."""
+MOST_SHOWN = 12
+"""Maximum axes beside the table."""
+
+
+class ChangeMark(NamedTuple):
+    """Mark of a changed axis: the first revision with the change, and True if that is saved already.
+
+    The label is blank if a common value has changed the axis, as that moment is not stored.
+    """
+
+    label: str
+    is_saved: bool
 
 
 @dataclass(frozen=True)
 class Since:
-    """The working copy beside the latest revision; without its `states` only when an axis was changed is known."""
+    """Working copy beside a revision, `line`, of all `lines`; without `states` only the moments of changed axes are
+    known."""
 
     machine: Machine
     line: RevisionLine
+    lines: Sequence[RevisionLine]
     states: tuple[State, State] | None
     reader: Reader
 
@@ -46,11 +59,11 @@ class Since:
     @property
     def place(self) -> str:
         """Address of the comparison, cell by cell."""
-        return f"{ADDRESS}/{self.machine.id}/revisions?from={self.label}&to={NOW}"
+        return comparison(self.machine, (self.label, NOW))
 
     @cached_property
     def compared(self) -> Compared | None:
-        """Comparison of the two; None where it is asked for by itself."""
+        """Comparison of revision and working copy; None if it is on its own page."""
         if self.states is None:
             return None
         labels = (self.label, NOW)
@@ -59,7 +72,7 @@ class Since:
 
     @cached_property
     def by_number(self) -> Mapping[int, ComparedAxis]:
-        """Axes that differ, by their numbers, as far as they are shown."""
+        """Differing axes by their numbers, as far as they are shown."""
         return {row.number: row for row in self.compared.rows} if self.compared else {}
 
     @cached_property
@@ -69,9 +82,25 @@ class Since:
             return frozenset(axis.number for axis in self.machine.items if axis.updated > self.line.created)
         return frozenset(axis.number for axis in self.compared.found.axes if axis.change != "removed")
 
+    def mark(self, axis: SavedAxis) -> ChangeMark | None:
+        """Mark of an axis that differs from the revision, or was changed in the latest one; None for any other."""
+        if axis.number not in self.changed:
+            before = self.lines[1].created if len(self.lines) > 1 else None
+            was_changed = before is not None and before < axis.updated <= self.lines[0].created
+            return ChangeMark(self.lines[0].label, True) if was_changed else None
+        if axis.updated > self.lines[0].created or self.line is self.lines[0]:
+            return ChangeMark(next_label(self.lines), False)
+        saved = [line.label for line in self.lines if line.created >= axis.updated > self.line.created]
+        return ChangeMark(saved[-1] if saved else "", True)
+
+    def mark_of(self, number: int) -> ChangeMark | None:
+        """Mark of the axis with a number; None for a removed axis."""
+        axis = next((each for each in self.machine.items if each.number == number), None)
+        return None if axis is None else self.mark(axis)
+
     @cached_property
     def counts(self) -> Mapping[str, int]:
-        """Numbers of the axes that are new, were removed, or are changed, and of those by what became of their gear."""
+        """Numbers of axes that are new, removed or changed, that have another gear, and that lost theirs."""
         if self.compared is None:
             return {}
         axes = self.compared.found.axes
@@ -80,17 +109,17 @@ class Since:
 
     @cached_property
     def rows(self) -> Sequence[ComparedAxis]:
-        """Axes that stand beside the table: without a suitable gear first, then with another one, then by effect."""
+        """Axes beside the table: without a suitable gear first, then with another one, then by effect."""
         return [row for row in self.by_number.values() if row.after][:MOST_SHOWN]
 
     @property
     def left_out(self) -> int:
-        """Number of those that do not."""
+        """Number of changed axes that are not beside the table."""
         return len(self.changed) - len(self.rows)
 
     @property
     def removed(self) -> Sequence[str]:
-        """Names of the axes that the revision alone has."""
+        """Names of the axes that only the revision has."""
         compared = self.compared
         return [
             compared.names[axis.number]
@@ -100,24 +129,26 @@ class Since:
 
 
 async def since_of(
-    request: Request, machine: Machine, lines: Sequence[RevisionLine], *, whole: bool = False
+    request: Request, machine: Machine, lines: Sequence[RevisionLine], label: str = "", *, whole: bool = False
 ) -> Since | None:
-    """Changes since the latest revision, compared at once where axes are few or all of them are wanted; None without a
-    revision.
+    """Changes since the revision of a label, by default the latest; compared at once if axes are few or `whole` is set.
+
+    None without a revision.
     """
     if not lines:
         return None
-    line = lines[0]
+    line = next((each for each in lines if label_key(each.label) == label_key(label)), lines[0])
     compares = whole or max(line.axes, len(machine.items)) <= FEW_AXES
     states = await states_of(request, machine, line.label, NOW) if compares else None
-    return Since(machine, line, states, current())
+    return Since(machine, line, lines[:MOST_LINES], states, current())
 
 
 @or_reason(REASON)
 async def show_since(request: Request) -> Response:
-    """Changes of a machine of any size since its latest revision; one without leads to where the first is saved."""
-    machine = await found(request, request.path_params["machine"], None, "machine")
-    since = await since_of(request, machine, await request.app.state.store.revisions(machine.id), whole=True)
+    """Page of changes of a machine of any size since a revision; without any redirects to the page of revisions."""
+    machine = await machine_of(request, request.path_params["machine"], None, "machine")
+    lines, label = await request.app.state.store.revisions(machine.id), request.query_params.get("since", "")
+    since = await since_of(request, machine, lines, label, whole=True)
     if since is None:
         return RedirectResponse(f"{ADDRESS}/{machine.id}/revisions", 303)
     return await compute(request, "batches", page, request, "machine_since.html", saved=machine, since=since)

@@ -1,11 +1,11 @@
-"""Machines from tables: one is uploaded, its columns are put right, all its axes are sized, and the result is kept.
+"""Machines from tables: a table is uploaded, its columns are corrected, all its axes are sized, the result is stored.
 
-`POST /machines` answers with what each column is read as, or, once no question is open, leads to the page of the result
-(`machine.py`). Modules that need Arrow are imported within the requests that use them.
+`POST /machines` answers with the meaning of each column, or, once no question is open, redirects to the page of the
+result (`machine.py`). Modules that need Arrow are imported within the requests that use them.
 """
 
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
@@ -17,30 +17,31 @@ from starlette.responses import RedirectResponse, Response
 
 from hpn import ENGINE_VERSION
 from hpn.catalogue import Catalogue
+from hpn.documents.axis import phases_of
 from hpn.fleet.beside import read_machine
 from hpn.fleet.faults import CellFault
 from hpn.fleet.order import MOST_AXES, MOST_PHASES
 from hpn.links.symbols import AXIS_INPUTS
 from hpn.store import MachineDraft, NoRoomError, ShareSpentError, StoreUnavailableError
 from hpn.store.machines import MOST_OF_CALLER
-from hpn.tables.files import TableBounds, packed, unpacked
+from hpn.tables.files import TableBounds
 from hpn.tables.reading import Reading
-from hpn.tables.table import Table
+from hpn.web.columns import drafts_of
 from hpn.web.door.access import admit
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute, compute_beside
 from hpn.web.door.problems import Problem, needs
-from hpn.web.door.uploads import read_parts
+from hpn.web.door.uploads import read_all_parts
 from hpn.web.fleets import worked as worked_beside
+from hpn.web.pages.machine_of_selections import axes_of
 from hpn.web.pages.machine_view import ADDRESS
 from hpn.web.pages.reading import work_of
-from hpn.web.pages.rendering import page
+from hpn.web.pages.table_upload import NOTHING, TableUpload, content_of, show_form
 from hpn.words.wording import N_, Quantity, Sentence
 
 NO_ROOM_SECONDS = 3600
 UNAVAILABLE = N_("Machines are temporarily unavailable: try again in a few seconds.")
-NOTHING = N_("choose a file or paste cells into the field")
 TOO_MANY = N_(
     "The table has {found} axes, and the limit of a page is {most}: size it with the command hpn fleet or POST "
     "/api/v1/fleet, which have no such limit."
@@ -67,28 +68,18 @@ EXAMPLE_AXES: Mapping[str, str] = {
     N_("Layer pusher"): '"[52,31]","[220,220]","[0.4,1.1]",1.5,160,600',
     N_("Lift"): '"[96,70,41]","[160,160,160]","[0.5,2,0.5]",3,260,1200',
 }
-"""Axes of a machine to begin with: their names, and the columns of the head that stand behind the name."""
+"""Axes of an example machine: their names, and their cells after the name."""
 
 
-@dataclass(frozen=True, slots=True)
-class Upload:
-    """State of the upload: what was given, what it is read as, and what is wrong.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Upload(TableUpload):
+    """Table of axes as read; `taken` is set once no question is left."""
 
-    `of` names what the choices belong to; `carried` is the table itself, for a form that can't send its file again.
-    """
-
-    text: str = ""
-    problems: tuple[Sentence, ...] = ()
-    table: Table | None = None
-    of: str = ""
-    carried: str = ""
-    sheets: tuple[str, ...] = ()
-    sheet: str = ""
-    taken: "Taken | None" = field(default=None, repr=False)
+    taken: "AxesToSize | None" = field(default=None, repr=False)
 
 
-class Taken(NamedTuple):
-    """Axes to be sized, what is wrong with their cells, and the rows of a table of cells that each came of."""
+class AxesToSize(NamedTuple):
+    """Axes to size, faults of their cells, and for each axis its rows in a table of cells."""
 
     rows: Sequence[Mapping[str, Any]]
     faults: Sequence[CellFault] = ()
@@ -99,35 +90,33 @@ class Taken(NamedTuple):
 
 
 async def upload(request: Request) -> Response:
-    """Shows how each column is read, or sizes the axes and leads to their page."""
-    draft, headers = Upload(), {}
+    """Show how each column is read, or size the axes and redirect to their page; `new` begins an empty machine, or one
+    of the marked saved selections.
+    """
+    draft, refusal = Upload(), None
     try:
         require_same_origin(request)
-        parts = await read_parts(request, request.app.state.settings.maximum_batch_body_bytes)
-        draft = Upload(parts.get("text", b"").decode(errors="replace"))
+        sent = await read_all_parts(request, request.app.state.settings.maximum_batch_body_bytes)
+        parts = dict(sent)
+        if parts.get("new") == b"selections":
+            marked = [part.decode(errors="replace") for name, part in sent if name == "id"]
+            return RedirectResponse(f"{ADDRESS}/{await _kept(request, partial(_of_selections, marked))}", 303)
+        if parts.get("new"):
+            return RedirectResponse(f"{ADDRESS}/{await _sized(request, AxesToSize(()))}?edit=common", 303)
+        draft = Upload(text=parts.get("text", b"").decode(errors="replace"))
         draft = await _read(request, parts)
         if draft.taken:
             return RedirectResponse(f"{ADDRESS}/{await _sized(request, draft.taken)}", 303)
-        status, problems = (422 if draft.problems else 200), draft.problems
-    except Problem as problem:
-        status, problems = problem.status_code, problem.sentences or (Sentence("{text}", {"text": problem.detail}),)
-        headers = dict(problem.headers or {})
-    except StoreUnavailableError as error:
-        refused = Problem.of(error)
-        status, problems = refused.status_code, refused.sentences or (Sentence(UNAVAILABLE),)
-        headers = dict(refused.headers or {})
-    shown = {"draft": draft, "problems": problems, **WORDS}
-    response = await compute(request, "pages", page, request, "machine_upload.html", status, **shown)
-    response.headers.update(headers)
-    return response
+    except (Problem, StoreUnavailableError) as error:
+        refusal = error
+    return await show_form(request, "machine_upload.html", draft, refusal, UNAVAILABLE, **WORDS)
 
 
 async def _read(request: Request, parts: Mapping[str, bytes]) -> Upload:
-    """Upload, or table that is carried along, read beside the service; `taken` once nothing is left to be asked."""
-    content = parts.get("file") or parts.get("text", b"").strip()
-    content = content or await compute(request, "pages", unpacked, parts.get("table", b""))
+    """Uploaded or carried table, read beside the service; `taken` is set once no question is left."""
+    content = await content_of(request, parts, parts.get("text", b""))
     if not content.strip():
-        return Upload(problems=(Sentence(NOTHING),))
+        return Upload().refused(Sentence(NOTHING))
     wanted = await compute(request, "pages", _wanted)
     fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
     found = await compute_beside(
@@ -137,7 +126,7 @@ async def _read(request: Request, parts: Mapping[str, bytes]) -> Upload:
         raise Problem(422, Sentence("{text}", {"text": found.refusal}))
     _require_few(found.axes, found.phases)
     if found.reading.suffix:
-        return Upload(fields.get("text", ""), taken=Taken(found.rows, found.faults))
+        return Upload(text=fields.get("text", ""), taken=AxesToSize(found.rows, found.faults))
     return await compute(request, "pages", _draft_of, fields, content, found.reading)
 
 
@@ -155,23 +144,27 @@ def _wanted() -> TableBounds:
     return axis_tables.WANTED
 
 
-def _draft_of(fields: Mapping[str, str], content: bytes, reading: Reading) -> Upload:
+def _draft_of(fields: Mapping[str, str], content: bytes | str, reading: Reading) -> Upload:
     table, problems = reading.table, tuple[Sentence, ...]()
     assert table is not None
     if table.problem:
         problems = (table.problem, *([Sentence(LARGER)] if "most" in table.problem.values else ()))
-    taken = Taken(table.axes, (), table.origins) if table.whole and "size" in fields else None
-    carried = packed(content) if reading.sheets else ""
-    return Upload(fields.get("text", ""), problems, table, reading.of, carried, reading.sheets, reading.sheet, taken)
+    taken = AxesToSize(table.axes, (), table.origins) if table.whole and "size" in fields else None
+    return Upload(text=fields.get("text", ""), problems=problems, taken=taken).as_read(content, reading)
 
 
-async def _sized(request: Request, taken: Taken) -> str:
-    """Id of the machine that comes of a table; raises Problem, or StoreUnavailableError."""
+async def _sized(request: Request, taken: AxesToSize) -> str:
+    """Id of the stored machine of a table; raises Problem, or StoreUnavailableError."""
+    return await _kept(request, partial(_calculated, taken))
+
+
+async def _kept(request: Request, make: Callable[[Request], Awaitable[MachineDraft]]) -> str:
+    """Id of a stored machine, made once there is room; raises Problem, or StoreUnavailableError."""
     store, most_bytes = request.app.state.store, request.app.state.settings.maximum_unsaved_fleet_bytes
-    caller = hashlib.sha256(request.state.caller.encode()).hexdigest()  # no address is kept in clear
+    caller = hashlib.sha256(request.state.caller.encode()).hexdigest()  # no address is stored in plain text
     try:
         await store.require_room(caller, most_bytes)
-        draft = await _calculated(request, taken)
+        draft = await make(request)
         id: str = await store.keep_machine(replace(draft, owner=request.state.api_key, caller=caller), most_bytes)
     except ShareSpentError:
         spent = Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})
@@ -182,14 +175,23 @@ async def _sized(request: Request, taken: Taken) -> str:
     return id
 
 
-async def _calculated(request: Request, taken: Taken) -> MachineDraft:
-    """Machine of a table; raises Problem."""
+async def _of_selections(ids: Sequence[str], request: Request) -> MachineDraft:
+    """Draft of a machine with an axis of each saved selection; raises Problem."""
+    catalogue = request.app.state.catalogue
+    axes = await axes_of(request, ids)
+    _require_few(len(axes), sum(phases_of(axis.application) for axis in axes))
+    drafts = await compute(request, "batches", drafts_of, axes, {}, catalogue)
+    return MachineDraft(drafts, ENGINE_VERSION, catalogue.version)
+
+
+async def _calculated(taken: AxesToSize, request: Request) -> MachineDraft:
+    """Draft of a table's machine, sized beside the service; raises Problem."""
     catalogue = request.app.state.catalogue
     work = await compute(request, "pages", _work, taken, catalogue)
     return MachineDraft(await worked_beside(request, work), ENGINE_VERSION, catalogue.version)
 
 
-def _work(taken: Taken, catalogue: Catalogue) -> Callable[[], Any]:
+def _work(taken: AxesToSize, catalogue: Catalogue) -> Callable[[], Any]:
     from hpn.web.axis_tables import drafts_in
 
     return partial(drafts_in, taken.rows, taken.faults, dict(taken.origins), catalogue)
@@ -200,7 +202,7 @@ WORDS: dict[str, Any] = {
     "example_head": EXAMPLE_HEAD,
     "example_axes": EXAMPLE_AXES,
 }
-"""Parts of the form for a table, and of the example beside it."""
+"""Texts of the form for a table, and of the example beside it."""
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])
 router.add_api_route(ADDRESS, upload, methods=["POST"], dependencies=[admit("batch")])

@@ -1,4 +1,4 @@
-"""Values of a machine as its page shows them: common ones, an axis's own, and the bound that they set to it."""
+"""Values of a machine for its page: common values, own values of an axis, and the axis's utilisation limit."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from hpn.web.columns import own_of, without_of
 
 
 class FieldValue(NamedTuple):
-    """A value of a field, as a common one or an axis's own; None where a common value does not hold for the axis."""
+    """Common or own value of a field; None if a common value does not apply to the axis."""
 
     symbol: Symbol
     value: Any
@@ -21,7 +21,7 @@ class FieldValue(NamedTuple):
 
 SHORT = ("requirements.utilisation", "requirements.life_h", "output_load.life_h", "output_load.load_coefficient")
 IN_ORDER = (*SHORT, *(path for path in COMMON if path not in SHORT))
-"""Fields that may be common, those that most machines have first."""
+"""Fields that may be common; those that most machines have come first."""
 
 
 def common_values(common: Mapping[str, Any]) -> list[FieldValue]:
@@ -30,12 +30,12 @@ def common_values(common: Mapping[str, Any]) -> list[FieldValue]:
 
 
 def own_values(axis: SavedAxis) -> list[FieldValue]:
-    """Values that an axis has of its own where there might be a common one; None where it does without one."""
+    """Own values of an axis in fields that may be common; None for a common value that it leaves out."""
     return _shown({**dict(flat(_parts(own_of(axis)))), **dict.fromkeys(without_of(axis))})
 
 
 def _parts(own: Json) -> Json:
-    """Those parts of an axis's own values that common ones stand in for, whatever else was sent."""
+    """Parts of an axis's own values that common values can replace."""
     return {name: own[name] for name in ("requirements", "output_load", "application_area", "rank_by") if name in own}
 
 
@@ -45,7 +45,7 @@ def _shown(values: Mapping[str, Any]) -> list[FieldValue]:
 
 
 def _plain(value: Any) -> Any:
-    """A value as it can be shown, whatever an axis was sent with: a number, a text, or texts of a list."""
+    """Value in a form that can be shown, even if malformed: a number, a text, or a list of texts."""
     if isinstance(value, list):
         return [str(_plain(each)) for each in value[:20]]
     if isinstance(value, Mapping):
@@ -58,13 +58,13 @@ def _plain(value: Any) -> Any:
 
 
 LARGEST = 1e15
-"""Number beyond every bound of an input."""
+"""Number above the bounds of all inputs."""
 
 
 def bound_of(axis: SavedAxis, common: Mapping[str, Any], *, in_worst_case: bool = False) -> float:
-    """Largest utilisation with which the governing check of an axis passes, as given or in its worst case."""
+    """Largest utilisation with which the governing check of an axis passes, for given values or in the worst case."""
     values = {**dict(flat(common)), **dict.fromkeys(without_of(axis)), **dict(flat(_parts(own_of(axis))))}
     names = ("worst_case_utilisation", "utilisation") if in_worst_case else ("utilisation",)
-    given = (values.get(f"requirements.{name}") for name in names)
-    u = next((each for each in given if isinstance(each, float | int) and 0 < each <= 1), 1.0)
+    shares = (values.get(f"requirements.{name}") for name in names)
+    u = next((each for each in shares if isinstance(each, float | int) and 0 < each <= 1), 1.0)
     return allowed(axis.answer["worst_governing_check" if in_worst_case else "governing_check"], u)

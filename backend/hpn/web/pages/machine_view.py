@@ -1,5 +1,6 @@
-"""The working copy of a machine as its page shows it: its axes as the address chooses them, and what they come to."""
+"""Machine for its page: the axes that the address chooses, and their totals."""
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,69 +12,75 @@ from hpn.account.readings import Life, life_of
 from hpn.catalogue import Catalogue
 from hpn.documents.axis import Json
 from hpn.documents.common import Common
-from hpn.documents.gears import GearOrder, Placed, gears_of
+from hpn.documents.gears import GearOrder, gears_of
 from hpn.store import Machine, SavedAxis
 from hpn.web.columns import common_of
+from hpn.web.edits import placed
 from hpn.web.pages.machine_values import FieldValue, bound_of, common_values, own_values
 from hpn.words.wording import N_
 
 ADDRESS = "/machines"
 REASON = "machine_refused.html"
-"""Page that says why there is nothing to show."""
+"""Page with the reason why there is nothing to show."""
 
 ROWS_ON_PAGE = 100
 
 SHOWN = {"": N_("All"), "todo": N_("To do"), "inside": N_("Don’t hold"), "changed": N_("Changed")}
-"""Filters of axes: those without a suitable gear, those whose suitable gear does not hold over the whole tolerance, and
-those changed since the latest revision."""
+"""Filters of axes: all, without a suitable gear, with a suitable gear that does not hold over the whole tolerance, and
+changed since the revision of the comparison."""
 
 MARGINS = ("unsuitable", "unrated", "open", "suitable")
-"""Verdicts in the order in which axes need somebody."""
+"""Verdicts in the order of urgency."""
 
 
 class MachineRow(NamedTuple):
-    """An axis with its place in the machine; its figures are those of its gear, or of the nearest miss."""
+    """Axis with its place in the machine; the figures are those of its gear, or of the nearest miss."""
 
     place: int
     axis: SavedAxis
 
     @property
     def name(self) -> str:
-        """Its name, else its number."""
+        """Name of the axis, else its number."""
         return self.axis.name or str(self.axis.number)
 
     @property
+    def texts(self) -> tuple[str, str, str]:
+        """Texts that a search looks at."""
+        return self.name, self.gear or "", self.axis.ordering_code or ""
+
+    @property
     def answer(self) -> Mapping[str, Any]:
-        """Columns of its answer."""
+        """Columns of the answer."""
         return self.axis.answer
 
     @property
     def status(self) -> str:
-        """Verdict on its gear."""
+        """Verdict on the gear."""
         status: str = self.axis.answer["status"]
         return status
 
     @property
     def fails_inside(self) -> bool:
-        """True where its gear is suitable as given, and does not hold over the whole tolerance."""
+        """True if the gear is suitable for the given values, but does not hold over the whole tolerance."""
         holds = self.axis.answer["holds"]
         return self.status == "suitable" and holds is not None and not holds
 
     @property
     def gear(self) -> str | None:
-        """Designation that the figures are of; None for an open axis."""
+        """Designation of the gear of the figures; None for an open axis."""
         gear: str | None = self.axis.answer["designation"]
         return gear
 
     @property
     def code(self) -> str:
-        """Rest of its ordering code behind the designation."""
+        """Rest of the ordering code after the designation."""
         code, gear = self.axis.ordering_code or "", self.gear or ""
         return code.removeprefix(gear) if gear and code.startswith(gear) else ""
 
     @property
     def life(self) -> Life | None:
-        """Shortest life; None where it is not known."""
+        """Shortest life; None if it is unknown."""
         answer = self.axis.answer
         of = answer["shortest_life_of"]
         endless = of is None and answer["status"] == "suitable" and '"shortest_life_h"' not in answer["unknown"]
@@ -96,7 +103,7 @@ ORDERS: Mapping[str, Callable[[MachineRow], Any]] = {
     "worst": _figure("worst_utilisation"),
     "frequency": _figure("natural_frequency_Hz"),
 }
-"""Columns that axes are sorted by, by the names of an address."""
+"""Sorting keys by their names in an address."""
 
 SORTINGS = {
     "": N_("utilisation"),
@@ -106,22 +113,26 @@ SORTINGS = {
     "check": N_("governing check"),
     "life": N_("shortest life"),
 }
-"""Orders that are offered by name."""
+"""Orders offered by name."""
 
 
 def _by_need(rows: Iterable[MachineRow]) -> list[MachineRow]:
-    """Axes without a suitable gear first, the worst of them before all, then the others by falling utilisation."""
+    """Axes in the order of MARGINS, those of a verdict by falling utilisation."""
+
+    rank = {status: place for place, status in enumerate(MARGINS)}
 
     def need(row: MachineRow) -> tuple[int, bool, float]:
-        used = row.answer["utilisation"]
-        return MARGINS.index(row.status), used is not None, -(used or 0)
+        answer = row.axis.answer
+        used = answer["utilisation"]
+        return rank[answer["status"]], used is not None, -(used or 0)
 
     return sorted(rows, key=need)
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """Filter and order of the axes, from an address; a wrong name in it counts as none."""
+    """Filter and order of the axes from an address, and the revision `since` which changes are shown; unknown names
+    are ignored."""
 
     show: str = ""
     gear: str = ""
@@ -129,19 +140,21 @@ class Chosen:
     sort: str = ""
     part: int = 1
     revision: str = ""
+    since: str = ""
 
     @classmethod
     def of(cls, query: Mapping[str, str]) -> "Chosen":
-        """Choice of an address."""
+        """Choice in the query of an address."""
         given = {name: query.get(name, "")[:200] for name in ("show", "gear", "search", "sort")}
         given["show"] = given["show"] if given["show"] in SHOWN else ""
+        given["since"] = query.get("since", "")[:20]
         given["sort"] = given["sort"] if given["sort"].removeprefix("-") in ORDERS else ""
         part = query.get("part", "")
         number = int(part) if part.isascii() and part.isdigit() and len(part) < 6 else 1
         return cls(**given, part=max(number, 1))
 
     def out_of(self, rows: Sequence[MachineRow], changed: Collection[int]) -> list[MachineRow]:
-        """Rows that are shown, in their order; `changed` are the numbers of those that differ from a revision."""
+        """Rows to show, in their order; `changed` are the numbers of the axes that differ from a revision."""
         word = self.search.strip().casefold()
         found = [
             row
@@ -150,7 +163,7 @@ class Chosen:
             and (self.show != "inside" or row.fails_inside)
             and (self.show != "changed" or row.axis.number in changed)
             and (not self.gear or row.gear == self.gear)
-            and any(word in text.casefold() for text in (row.name, row.gear or "", row.axis.ordering_code or ""))
+            and (not word or any(word in text.casefold() for text in row.texts))
         ]
         if not self.sort:
             return _by_need(found)
@@ -160,32 +173,32 @@ class Chosen:
         return valued + [row for row in found if key(row) is None]
 
     def address(self, path: str, **changes: str | int) -> str:
-        """Address of a page that shows the same but for some changes."""
+        """Address of a page with the same choice except for some changes."""
         pairs = {name: value for name, value in {**self.__dict__, **changes}.items() if value not in ("", 1)}
         return f"{path}?{urlencode(pairs)}" if pairs else path
 
 
 @dataclass(frozen=True)
 class MachineView:
-    """A machine with those axes that its page shows."""
+    """Machine with the axes that its page shows."""
 
     machine: Machine
     catalogue: Catalogue
     chosen: Chosen = field(default_factory=Chosen)
     changed_axes: Collection[int] = frozenset()
-    """Numbers of the axes that differ from the latest revision."""
+    """Numbers of the axes that differ from the revision of the comparison."""
 
     orders = SORTINGS
 
     @cached_property
     def frozen(self) -> str:
-        """Label of the revision that is shown; blank for the working copy."""
+        """Label of the shown revision; blank for the working copy."""
         return self.chosen.revision
 
     @cached_property
     def everything(self) -> Chosen:
         """Choice of all axes."""
-        return Chosen(revision=self.frozen)
+        return Chosen(revision=self.frozen, since=self.chosen.since)
 
     @cached_property
     def path(self) -> str:
@@ -194,36 +207,38 @@ class MachineView:
 
     @cached_property
     def all(self) -> list[MachineRow]:
-        """All its axes."""
+        """Rows of all axes."""
         return [MachineRow(place, axis) for place, axis in enumerate(self.machine.items, 1)]
 
     @cached_property
     def common(self) -> Json:
-        """Its common values."""
+        """Common values of the machine."""
         return common_of(self.machine)
 
     @cached_property
     def found(self) -> list[MachineRow]:
-        """Axes that the address chooses."""
+        """Rows that the address chooses."""
         return self.chosen.out_of(self.all, self.changed_axes)
 
     @cached_property
     def rows(self) -> list[MachineRow]:
-        """Those of them on this part."""
+        """Chosen rows on the present part."""
         return self.found[(self.chosen.part - 1) * ROWS_ON_PAGE : self.chosen.part * ROWS_ON_PAGE]
 
     @cached_property
     def counts(self) -> Mapping[str, int]:
         """Numbers of axes by verdict."""
-        found = dict.fromkeys(MARGINS, 0)
-        for row in self.all:
-            found[row.status] += 1
-        return found
+        return dict.fromkeys(MARGINS, 0) | Counter(axis.answer["status"] for axis in self.machine.items)
 
     @cached_property
     def failing_inside(self) -> int:
-        """Number of axes whose gear is suitable as given, and does not hold over the whole tolerance."""
-        return sum(row.fails_inside for row in self.all)
+        """Number of axes whose gear is suitable for the given values, but does not hold over the whole tolerance."""
+        return sum(row.fails_inside for row in self.all) if self.has_worst_case else 0
+
+    @property
+    def holding(self) -> int:
+        """Number of axes whose gear holds over the whole tolerance."""
+        return sum(axis.answer["holds"] is True for axis in self.machine.items)
 
     def showing(self, show: str) -> int:
         """Number of axes that a filter shows."""
@@ -235,24 +250,26 @@ class MachineView:
 
     @cached_property
     def top(self) -> MachineRow | None:
-        """The suitable axis that is used most."""
-        used = [row for row in self.all if row.status == "suitable" and row.answer["utilisation"] is not None]
-        return max(used, key=lambda row: row.answer["utilisation"], default=None)
+        """Suitable axis with the largest utilisation; None if no axis is suitable."""
+        answers = [(row, row.axis.answer) for row in self.all]
+        used = [(answer["utilisation"], row) for row, answer in answers if answer["status"] == "suitable"]
+        known = [each for each in used if each[0] is not None]
+        return max(known, key=lambda each: each[0], default=(0.0, None))[1]
 
     @cached_property
     def has_frequency(self) -> bool:
-        """True where an axis has a natural frequency."""
-        return any(row.answer["natural_frequency_Hz"] is not None for row in self.all)
+        """True if an axis has a natural frequency."""
+        return any(axis.answer["natural_frequency_Hz"] is not None for axis in self.machine.items)
 
     @cached_property
     def has_worst_case(self) -> bool:
-        """True where an axis has tolerances that its gear is judged over."""
-        return any(row.answer["holds"] is not None for row in self.all)
+        """True if an axis has tolerances over which its gear is judged."""
+        return any(axis.answer["holds"] is not None for axis in self.machine.items)
 
     @cached_property
     def order(self) -> GearOrder:
         """Gears to order."""
-        return gears_of(map(placed, self.machine.items), self.catalogue)
+        return gears_of((placed(axis.number, axis) for axis in self.machine.items), self.catalogue)
 
     @cached_property
     def kinds(self) -> int:
@@ -269,11 +286,11 @@ class MachineView:
         return bound_of(row.axis, self.common)
 
     def worst_bound(self, row: MachineRow) -> float:
-        """The same of its worst case."""
+        """Largest utilisation with which the governing check of an axis's worst case passes."""
         return bound_of(row.axis, self.common, in_worst_case=True)
 
     def own(self, row: MachineRow) -> list[FieldValue]:
-        """Values that an axis has of its own."""
+        """Own values of an axis."""
         return own_values(row.axis)
 
     @cached_property
@@ -288,7 +305,7 @@ class MachineView:
 
     @cached_property
     def names(self) -> Mapping[int, str]:
-        """Names of its axes by their numbers."""
+        """Names of all axes by their numbers."""
         return {row.axis.number: row.name for row in self.all}
 
     @cached_property
@@ -307,7 +324,7 @@ class MachineView:
         return self.chosen.address(self.path, show=value, part=1) + "#axes-heading"
 
     def sorted_by(self, key: str) -> str:
-        """Address of the axes in the order of a column."""
+        """Address of the axes sorted by a column, or in the reverse order if they are."""
         turned = f"-{key}" if self.chosen.sort == key else key
         return self.chosen.address(self.path, sort=turned, part=1) + "#axes-heading"
 
@@ -319,16 +336,16 @@ class MachineView:
 
     @property
     def closed(self) -> str:
-        """Address of the same axes without it."""
+        """Address of the same axes without the form of the common values."""
         return self.chosen.address(self.path)
 
     @property
     def changed(self) -> str:
-        """Address that takes changes and shows the same axes."""
+        """Address that receives changes and then shows the same axes."""
         return self.chosen.address(f"{self.path}/change")
 
     def order_of(self, key: str) -> str:
-        """Order of the axes by a column; blank where there is none."""
+        """Present order of a column; blank if the axes are not sorted by it."""
         return {key: "ascending", f"-{key}": "descending"}.get(self.chosen.sort or "-utilisation", "")
 
     @property
@@ -337,10 +354,5 @@ class MachineView:
         return max(1, -(-len(self.found) // ROWS_ON_PAGE))
 
     def part(self, number: int) -> str:
-        """Address of one of them, blank where there is none."""
+        """Address of a part; blank for a number without a part."""
         return self.chosen.address(self.path, part=number) + "#axes-heading" if 1 <= number <= self.parts else ""
-
-
-def placed(axis: SavedAxis) -> Placed:
-    """An axis by what counts for the order of gears."""
-    return Placed(axis.number, axis.quantity, axis.ordering_code, axis.answer["selected"])

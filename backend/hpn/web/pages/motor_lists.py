@@ -1,6 +1,6 @@
-"""Lists of motors: a table is pasted or opened, its columns are put right, and it is kept, edited or deleted.
+"""Lists of motors: a table is pasted or opened, its columns are corrected, and the list is stored, edited or deleted.
 
-A list that is edited goes the same way as a new one: the page writes it as a table, which is read again.
+An edited list takes the same way as a new one: the page writes it as a table, which is read again.
 """
 
 from collections.abc import Mapping
@@ -17,12 +17,10 @@ from hpn.application import MotorEntry
 from hpn.application.faults import sentences_of
 from hpn.engine.motors import entries_of
 from hpn.store import SavedMotorList, StoreUnavailableError
-from hpn.tables.files import packed, unpacked
-from hpn.tables.motors import MOTORS
+from hpn.tables.motor_inputs import MOTORS
 from hpn.tables.reading import Reading
-from hpn.tables.table import Table
 from hpn.web import motor_lists
-from hpn.web.door.access import ADMIN, admit
+from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import compute
@@ -34,39 +32,33 @@ from hpn.web.motor_tables import WANTED, as_text, motors_in
 from hpn.web.pages.reading import read
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saved_list import changed_since, version_of
+from hpn.web.pages.table_upload import NOTHING, TableUpload, content_of, show_form
 from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/motor-lists"
 REASON = "motor_list_refused.html"
-"""Page that says why a list can't be shown or changed."""
+"""Page with the reason why a list can't be shown or changed."""
 
-NOTHING = N_("choose a file or paste cells into the field")
+UNAVAILABLE = N_("Motor lists are temporarily unavailable: try again in a few seconds.")
 NO_NAME = N_("Name the list.")
 NO_MOTORS = N_("The table has no motor that can be taken.")
 MOST_SHOWN = 300
-"""Motors of a list that its page shows as a table; its text has all of them."""
+"""Maximum motors that a list's page shows as a table; its text has all of them."""
 
 
-@dataclass(frozen=True, slots=True)
-class MotorUpload:
-    """A table of motors as it is read: what was given, what it leaves open, and the motors that come of it.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotorUpload(TableUpload):
+    """Table of motors as read, and its motors.
 
-    `list` is the list that it replaces, blank for a new one, `version` the state of it that was opened; `link` the
-    application whose pairs are wanted; `carried` the table itself, for a form that can't send its file again.
+    `list` is the id of the list to replace, blank for a new one, and `version` its version when it was opened; `link`
+    is the application whose pairs are wanted.
     """
 
     name: str = ""
     link: str = ""
-    text: str = ""
     list: str = ""
     version: str = ""
-    problems: tuple[Sentence, ...] = ()
-    table: Table | None = None
-    of: str = ""
-    carried: str = ""
-    sheets: tuple[str, ...] = ()
-    sheet: str = ""
-    said: tuple[Sentence, ...] = ()
+    notes: tuple[Sentence, ...] = ()
     motors: tuple[MotorEntry, ...] = field(default=(), repr=False)
 
 
@@ -75,7 +67,7 @@ class MotorUpload:
 
 @or_reason(REASON)
 async def show_lists(request: Request) -> Response:
-    """All lists by their names, and the form for another. `/api/v1/motor-lists` says the same as JSON."""
+    """Page of all lists by their names, with the form for another. `/api/v1/motor-lists` is the same as JSON."""
     shown: dict[str, Any] = {
         "lines": await motor_lists.lines_of(request),
         "server": len(request.app.state.catalogue.motors),
@@ -87,20 +79,20 @@ async def show_lists(request: Request) -> Response:
 
 @or_reason(REASON)
 async def show_list(request: Request) -> Response:
-    """A list with its motors, to be edited by whoever may."""
+    """Page of a list with its motors and the form that edits it; `edit` is the step that asks for the key."""
     id, state = request.path_params["id"], request.app.state
     if id == SERVER:
         return await _shown(request, SERVER, entries_of(state.catalogue.motors), None)
-    saved = await motor_lists.found(request, id)
+    saved = await motor_lists.list_of(request, id)
+    state.gate.require_key_to_edit(request, saved.owner)
     return await _shown(request, saved.name, motor_lists.entries_in(saved), saved)
 
 
 async def _shown(request: Request, name: str, motors: list[MotorEntry], saved: SavedMotorList | None) -> Response:
-    free = not request.app.state.gate.has_keys
-    may_change = saved is not None and (free or request.state.api_key in (ADMIN, saved.owner or ADMIN))
+    may_change = saved is not None and request.app.state.gate.may_change(request, saved.owner)
     draft = MotorUpload()
     if saved is not None and may_change:
-        draft = MotorUpload(saved.name, text=as_text(motors), list=saved.id, version=str(saved.version))
+        draft = MotorUpload(name=saved.name, text=as_text(motors), list=saved.id, version=str(saved.version))
     shown: dict[str, Any] = {
         "title": name,
         "saved": saved,
@@ -117,51 +109,42 @@ async def _shown(request: Request, name: str, motors: list[MotorEntry], saved: S
 
 
 async def read_list(request: Request) -> Response:
-    """Shows how each column of a table is read, or keeps it as a list and leads to its pairs, or to its page."""
+    """Show how each column of a table is read, or store it as a list and redirect to its pairs, or to its page."""
     return await _taken(request, "")
 
 
 async def save_list(request: Request) -> Response:
-    """The same in place of a list that there is."""
+    """Show how each column of a table is read, or replace an existing list by it."""
     return await _taken(request, request.path_params["id"])
 
 
 async def _taken(request: Request, id: str) -> Response:
-    draft, headers, status = MotorUpload(list=id), dict[str, str](), 200
+    draft, refusal = MotorUpload(list=id), None
     try:
         require_same_origin(request)
         draft, keeps = await _read(request, id)
         saved = await motor_lists.changeable(request, id) if id else None
         if keeps and not draft.problems and draft.table and draft.table.whole:
             return await _kept(request, draft, saved)
-        status = 422 if draft.problems else 200
     except (Problem, StoreUnavailableError) as error:
-        problem = Problem.of(error) if isinstance(error, StoreUnavailableError) else error
-        told = tuple(problem.sentences) or (Sentence("{text}", {"text": problem.detail}),)
-        draft = replace(draft, problems=told)
-        status, headers = problem.status_code, dict(problem.headers or {})
-    shown = {"draft": draft, "roles": MOTORS.by_role}
-    response = await compute(request, "pages", page, request, "motor_list_read.html", status, **shown)
-    response.headers.update(headers)
-    return response
+        refusal = error
+    return await show_form(request, "motor_list_read.html", draft, refusal, UNAVAILABLE, roles=MOTORS.by_role)
 
 
 async def _read(request: Request, id: str) -> tuple[MotorUpload, bool]:
-    """A table as it is read beside the service, and whether it is to be kept as it is."""
+    """Table read beside the service, and True if it is to be stored as read."""
     parts = await read_parts(request)
     fields = {name: decoded(part) for name, part in parts.items() if name not in ("file", "table")}
-    text = fields.get("text", "").strip()
-    content: bytes | str = parts.get("file") or text
-    content = content or await compute(request, "pages", unpacked, parts.get("table", b""))
+    content = await content_of(request, parts, fields.get("text", ""))
     draft = MotorUpload(
-        " ".join(fields.get("name", "").split()),
-        query_part(fields.get("link", "")),
-        fields.get("text", ""),
-        id,
-        fields.get("version", ""),
+        name=" ".join(fields.get("name", "").split()),
+        link=query_part(fields.get("link", "")),
+        text=fields.get("text", ""),
+        list=id,
+        version=fields.get("version", ""),
     )
     if not content.strip():
-        return replace(draft, problems=(Sentence(NOTHING),)), False
+        return draft.refused(Sentence(NOTHING)), False
     reading = await read(request, content, WANTED, fields)
     return await compute(request, "pages", _draft_of, draft, content, reading), "keep" in fields
 
@@ -169,27 +152,17 @@ async def _read(request: Request, id: str) -> tuple[MotorUpload, bool]:
 def _draft_of(draft: MotorUpload, content: bytes | str, reading: Reading) -> MotorUpload:
     table = reading.table
     if table is None:
-        return replace(draft, problems=(Sentence(NO_MOTORS),))
-    motors, said = motors_in(table)
+        return draft.refused(Sentence(NO_MOTORS))
+    motors, notes = motors_in(table)
     problems: tuple[Sentence, ...] = (table.problem,) if table.problem else ()
     if table.whole and not motors:
-        problems = (*said, Sentence(NO_MOTORS))
-    carried = packed(content.encode() if isinstance(content, str) else content)
-    return replace(
-        draft,
-        problems=problems,
-        table=table,
-        of=reading.of,
-        carried=carried,
-        sheets=reading.sheets,
-        sheet=reading.sheet,
-        said=tuple(said),
-        motors=tuple(motors),
-    )
+        problems = (*notes, Sentence(NO_MOTORS))
+    whole = draft.as_read(content, reading)
+    return replace(whole, problems=problems, notes=tuple(notes), motors=tuple(motors))
 
 
 async def _kept(request: Request, draft: MotorUpload, saved: SavedMotorList | None) -> Response:
-    """Redirect to the pairs of the application that the list is for, else to the list; Problem where it isn't kept."""
+    """Store a list; redirect to the pairs of its application, else to the list. Raises Problem for an invalid list."""
     if not draft.name:
         raise Problem(422, Sentence(NO_NAME))
     try:
@@ -197,29 +170,21 @@ async def _kept(request: Request, draft: MotorUpload, saved: SavedMotorList | No
     except ValidationError as error:
         raise Problem(422, [sentence for _, sentence, _ in sentences_of(error)][:5]) from None
     if saved is None:
-        id = (await motor_lists.kept(request, draft_of(sent))).id
+        id = (await motor_lists.keep(request, draft_of(sent))).id
     else:
         version = version_of({"version": draft.version})
-        if version not in (None, saved.version):
-            raise changed_since()
-        id = (await motor_lists.replaced(request, saved.id, draft_of(sent), version)).id
-    return RedirectResponse(_onward(draft.link, id), 303)
-
-
-def _onward(link: str, id: str) -> str:
-    return f"/pairs?{link}&{urlencode({'list': id})}" if link else f"{ADDRESS}/{id}"
+        id = (await motor_lists.replace(request, saved.id, draft_of(sent), version, changed_since())).id
+    place = f"/pairs?{draft.link}&{urlencode({'list': id})}" if draft.link else f"{ADDRESS}/{id}"
+    return RedirectResponse(place, 303)
 
 
 @or_reason(REASON)
 async def delete_list(request: Request) -> Response:
-    """Deletes a list for good, and leads back to the lists. What was taken from it keeps its figures."""
+    """Delete a list permanently, and redirect to the lists. Applications keep the figures that they took from it."""
     require_same_origin(request)
     fields: Mapping[str, str] = dict(pairs_of(await read_form(request)))
     saved = await motor_lists.changeable(request, request.path_params["id"])
-    version = version_of(fields)
-    if version not in (None, saved.version):
-        raise changed_since()
-    await motor_lists.removed(request, saved.id, version)
+    await motor_lists.remove(request, saved.id, version_of(fields), changed_since())
     return RedirectResponse(ADDRESS, 303)
 
 

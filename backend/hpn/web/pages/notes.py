@@ -1,4 +1,4 @@
-"""Notes on a result by what a reader does about them: decide, know what is assumed or not rated, or just know."""
+"""Notes on a result, grouped by their use to the reader: decisions, assumptions, missing ratings, information."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -22,7 +22,7 @@ GROUPS: Mapping[Group, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """One thing to do about a note: type an input there, press a button of the form, go to an input, or see a page.
+    """Action on a note: type an input there, press a button of the form, go to an input, or see a page.
 
     `what` is the name of the input, the button's value, or the address.
     """
@@ -34,7 +34,7 @@ class Action:
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """A notice with what it touches (a msgid), and what can be done about it."""
+    """Notice with the subject that it touches (a msgid), and the actions on it."""
 
     notice: Notice
     touches: str
@@ -101,6 +101,7 @@ _NOTES: Mapping[str, tuple[Group, str, tuple[Action, ...]]] = {
     "efficiency_beyond_curve": ("assumed", _MOTOR, ()),
     "efficiency_unknown": ("decide", _MOTOR, (_EFFICIENCY,)),
     "motor_torque_partial": ("assumed", _MOTOR, ()),
+    "rotor_not_included": ("assumed", _MOTOR, ()),
     "motor_losses_included": ("known", _MOTOR, ()),
     "motor_inertia_included": ("assumed", _MOTOR, ()),
     "motor_all_included": ("known", _MOTOR, ()),
@@ -125,10 +126,10 @@ _NOTES: Mapping[str, tuple[Group, str, tuple[Action, ...]]] = {
     "size_unrated": ("unrated", _CATALOGUE, (Action("see", "", N_("Enter its figures")),)),
     "catalogue_supplement": ("known", _CATALOGUE, ()),
 }
-"""Of each notice its group, what it touches, and what can be done about it."""
+"""Group, subject and actions of each notice by its code."""
 
 _OTHER: tuple[Group, str, tuple[Action, ...]] = ("known", "", ())
-"""The same of a notice of another version."""
+"""Group, subject and actions of a notice of another version."""
 
 
 def note_groups(notices: Iterable[Notice], catalogue: Catalogue | None) -> list[NoteGroup]:
@@ -145,7 +146,7 @@ def note_groups(notices: Iterable[Notice], catalogue: Catalogue | None) -> list[
 
 
 def _addressed(action: Action, notice: Notice, catalogue: Catalogue | None) -> Action:
-    """The action with the page of the gear that the notice names; no address where it is not in the catalogue."""
+    """Action with the page of the gear that the notice names; without an address if the catalogue lacks the gear."""
     if action.kind != "see":
         return action
     first = str(notice.values.get("name") or notice.values.get("names") or "").split(",")[0]
@@ -155,18 +156,19 @@ def _addressed(action: Action, notice: Notice, catalogue: Catalogue | None) -> A
 
 
 _END = re.compile(r"(?<=[\w)\]%’])(?:[:;]|(?<!\b\w)\.(?=\s+[A-ZÄÖÜ]))\s+")
-"""End of the first part of a notice; "eq. 17.9" and "z. B." are none."""
+"""End of the first part of a notice; not the full stops of "eq. 17.9" and "z. B."."""
 
 
 _WORD = re.compile(r"[a-zäöüß]+(?![_\w])")
-"""A word that begins a sentence once it stands alone; a symbol with an index is none."""
+"""Word that gets a capital at the beginning of a sentence; not a symbol with an index."""
 
 
 def head_and_reason(text: str) -> tuple[str, str]:
-    """Claim of a notice, up to the first colon, semicolon or full stop of its text, and the rest as a sentence."""
+    """Claim of a notice, up to the first colon, semicolon or full stop of its text and without it, and the rest as a
+    sentence."""
     end = _END.search(text)
     if end is None:
-        return text, ""
+        return text.removesuffix("."), ""
     reason = text[end.end() :]
     begins = _WORD.match(reason)
-    return text[: end.end()].rstrip(" :;"), reason[:1].upper() + reason[1:] if begins else reason
+    return text[: end.end()].rstrip(" :;."), reason[:1].upper() + reason[1:] if begins else reason

@@ -1,4 +1,4 @@
-"""The page of pairs: an application, or an axis of a machine, with every gear and every motor of a list."""
+"""Page of pairs: an application, or an axis of a machine, with every gear and every motor of a list."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from starlette.responses import Response
 from hpn.application import Application, InputError, Motor, MotorEntry, PairRank
 from hpn.links.writer import to_link
 from hpn.store import MotorListLine
-from hpn.tables.motors import MOTORS
+from hpn.tables.motor_inputs import MOTORS
 from hpn.tables.numbers import read_value
 from hpn.web import motor_lists
 from hpn.web.door.access import admit
@@ -33,11 +33,11 @@ from hpn.words.wording import N_, Sentence
 
 ADDRESS = "/pairs"
 OWN = ("list", "by", "fd", "all", "at", "more")
-"""Parameters of the page itself; the others are those of the application."""
+"""Parameters of the page itself; all others belong to the application."""
 
-OF_MOTOR = ("nm", "Tm", "Tmn", "nmr", "Jm", "md", "Jr")
+OF_MOTOR = ("nm", "Tm", "Tmn", "nmr", "Jm", "md", "Jr", "Tst", "mmo", "mcv", "mnm")
 TYPED = ("Jr", "eta")
-"""Inputs of the application that the page's own form has."""
+"""Inputs of the application in the page's own form."""
 
 RANKS: Mapping[PairRank, str] = {
     "weight": N_("mass of the pair"),
@@ -52,8 +52,8 @@ NO_INERTIA = N_("Inertia ratio and resonance need a motion, or the inertia of th
 
 
 @dataclass(frozen=True)
-class Asked:
-    """Contents of the address: the application's parameters, the page's own, and who the application belongs to."""
+class PairsQuery:
+    """Content of the address: the application's parameters, the page's own, and the application's axis, if any."""
 
     place: str
     back: str
@@ -64,71 +64,69 @@ class Asked:
 
     @cached_property
     def ratio(self) -> float | Sentence | None:
-        """Largest inertia ratio that is typed, a sentence for what is none; None where nothing is."""
+        """Typed largest inertia ratio; a sentence for an invalid text, None for a blank one."""
         text = dict(self.carried).get("Jr", "").strip()
         return positive(text, NO_RATIO) if text else None
 
     @cached_property
     def application(self) -> Application | None:
-        """The application with that bound in place of a motor; None where it can't be read."""
+        """Application with the largest inertia ratio in place of a motor; None if it can't be read."""
         application = self.form.application if not self.form.problems else None
         if application is None or self.ratio is None or isinstance(self.ratio, Sentence):
             return application
-        motor = Motor(inertia_ratio=self.ratio)
-        requirements = application.requirements.model_copy(update={"motor": motor})
-        return application.model_copy(update={"requirements": requirements})
+        return application.requiring(motor=Motor(inertia_ratio=self.ratio))
 
     def link(self, **more: str) -> str:
-        """Address of the page with other parameters of its own."""
+        """Address of the page with some of its own parameters changed."""
         own = {name: text for name, text in {**self.own, **more}.items() if text}
         return f"{self.place}?{urlencode([*self.carried, *own.items()])}"
 
 
 @or_reason(REASON)
 async def show_pairs(request: Request) -> Response:
-    """Pairs for the application of the address."""
-    return await _shown(request, await compute(request, "pages", _asked, request.url.query))
+    """Page of pairs for the application of the address."""
+    return await _shown(request, await compute(request, "pages", _query_of, request.url.query))
 
 
-def _asked(query: str) -> Asked:
+def _query_of(query: str) -> PairsQuery:
     pairs = pairs_of(query)
     carried = [pair for pair in pairs if pair[0] not in OWN]
     form = link_reader.parse(_read_alone(carried))
-    return Asked(ADDRESS, f"/?{urlencode(carried)}", form, carried, dict(p for p in pairs if p[0] in OWN))
+    return PairsQuery(ADDRESS, f"/?{urlencode(carried)}", form, carried, dict(p for p in pairs if p[0] in OWN))
 
 
 @or_reason(REASON)
 async def show_axis_pairs(request: Request) -> Response:
-    """Pairs for an axis of a machine, as it is stored or as the address says."""
+    """Page of pairs for an axis of a machine, as stored or with the inputs of the address."""
     machine, axis = await axis_of(request, request.path_params["id"], number_of(request))
     around = await neighbours(request, machine, axis)
 
-    def read() -> Asked:
+    def read() -> PairsQuery:
         pairs = pairs_of(request.url.query)
         carried = [pair for pair in pairs if pair[0] not in OWN]
         form, view = view_of(machine, axis, around, _read_alone(carried), request.app.state.catalogue)
         own = dict(pair for pair in pairs if pair[0] in OWN)
         kept = carried or list(view.typed)
-        return Asked(f"{view.place}/pairs", view.place, form, kept, own, view)
+        return PairsQuery(f"{view.place}/pairs", view.place, form, kept, own, view)
 
     return await _shown(request, await compute(request, "pages", read))
 
 
 def _read_alone(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Parameters of an application without a motor of its own, whose place those of the list take."""
+    """Parameters of an application without its own motor, which the list's motors replace."""
     return [(name, _plain(text) if name in TYPED else text) for name, text in pairs if name not in OF_MOTOR]
 
 
 def _plain(text: str) -> str:
-    """A number as people type it, in plain notation."""
+    """Typed number in plain notation."""
     return text.strip().replace(",", ".")
 
 
-async def _shown(request: Request, asked: Asked) -> Response:
+async def _shown(request: Request, query: PairsQuery) -> Response:
     state = request.app.state
     lines = await motor_lists.lines_of(request)
     first = SERVER if state.catalogue.motors else lines[0].id if lines else ""
-    id = asked.own.get("list") or first
+    id = query.own.get("list") or first
     motors: list[MotorEntry] = []
     problems = list[Sentence]()
     if id:
@@ -136,41 +134,42 @@ async def _shown(request: Request, asked: Asked) -> Response:
             motors = await motor_lists.motors_of(request, id)
         except InputError as error:
             problems += [sentence for _, sentence in error.sentences]
-    return await compute(request, "pages", _page, request, asked, lines, id, motors, problems)
+    return await compute(request, "pages", _page, request, query, lines, id, motors, problems)
 
 
 def _page(
     request: Request,
-    asked: Asked,
+    query: PairsQuery,
     lines: list[MotorListLine],
     id: str,
     motors: list[MotorEntry],
     problems: list[Sentence],
 ) -> Response:
-    catalogue, view, application = request.app.state.catalogue, None, asked.application
-    text = asked.own.get("fd", "").strip()
+    catalogue, view, application = request.app.state.catalogue, None, query.application
+    text = query.own.get("fd", "").strip()
     least = positive(text, NO_RESONANCE) if text else None
-    wrong = asked.form.problems if asked.carried else ()
-    problems += _problems_of(asked, least)
+    wrong = query.form.problems if query.carried else ()
+    problems += _problems_of(query, least)
     if application is not None and motors and not problems:
-        by = asked.own.get("by", "weight")
+        by = query.own.get("by", "weight")
+        gear, _, motor = query.own.get("at", "").partition(" ")
         view = PairsView(
             application,
             motors,
             catalogue,
-            _links(asked),
+            _links(query),
             next((rank for rank in RANKS if rank == by), "weight"),
             least if isinstance(least, float) else None,
-            bool(asked.own.get("all")),
-            MOST_SHOWN if asked.own.get("more") else SHOWN,
-            _marked(asked.own.get("at", "")),
+            bool(query.own.get("all")),
+            MOST_SHOWN if query.own.get("more") else SHOWN,
+            (gear, motor),
         )
         try:
             _ = view.table
         except InputError as error:
             view, problems = None, [*problems, *(sentence for _, sentence in error.sentences)]
-    shown: dict[str, Any] = {
-        "asked": asked,
+    context: dict[str, Any] = {
+        "query": query,
         "lines": lines,
         "server": len(catalogue.motors),
         "id": id,
@@ -178,39 +177,34 @@ def _page(
         "ranks": RANKS,
         "problems": problems,
         "typed": TYPED,
-        "draft": MotorUpload(link=urlencode(asked.carried) if asked.axis is None else ""),
+        "draft": MotorUpload(link=urlencode(query.carried) if query.axis is None else ""),
         "roles": MOTORS.by_role,
     }
-    return page(request, "pairs.html", 422 if wrong else 200, **shown)
+    return page(request, "pairs.html", 422 if wrong else 200, **context)
 
 
-def _problems_of(asked: Asked, least: float | Sentence | None) -> list[Sentence]:
-    """Problems of an application and the bounds of its pairs; none on a page that is opened without one."""
-    problems = [one for one in (least, asked.ratio) if isinstance(one, Sentence)]
-    problems += [problem.message for problem in asked.form.problems if asked.carried]
-    application = asked.application
+def _problems_of(query: PairsQuery, least: float | Sentence | None) -> list[Sentence]:
+    """Problems of an application and of the limits of its pairs; one that asks for a cycle if there is none."""
+    problems = [one for one in (least, query.ratio) if isinstance(one, Sentence)]
+    problems += [problem.message for problem in query.form.problems if query.carried]
+    application = query.application
     if application is None and not problems:
         return [Sentence(NO_CYCLE)]
-    needs = (least is not None or asked.ratio is not None) and not problems
+    needs = (least is not None or query.ratio is not None) and not problems
     if needs and application and not application.duty_cycle.motion and not application.requirements.load_inertia_kgm2:
         problems.append(Sentence(NO_INERTIA))
     return problems
 
 
 def positive(text: str, template: str) -> float | Sentence:
-    """A number above 0, or the sentence of a template for any other text."""
+    """Number above 0, or the sentence of a template for any other text."""
     value = read_value(_plain(text), "number")
     return Sentence(template) if isinstance(value, Sentence) or not 0 < float(value) < 1e9 else float(value)
 
 
-def _marked(text: str) -> tuple[str, str]:
-    gear, _, motor = text.partition(" ")
-    return gear, motor
-
-
-def _links(asked: Asked) -> Callable[[Application, str], str | None]:
-    """Links of pairs, to the selection or back to the axis; none where one is too long."""
-    write = asked.axis.link if asked.axis else to_link
+def _links(query: PairsQuery) -> Callable[[Application, str], str | None]:
+    """Function that makes links of pairs, to the selection or back to the axis; None for a link that is too long."""
+    write = query.axis.link if query.axis else to_link
 
     def link(application: Application, gear: str) -> str | None:
         address = f"{write(application)}&gear={gear}"

@@ -1,4 +1,4 @@
-"""Pairs of gear and motor as their page shows them: ranked, with the one that is marked, and the rejected by check."""
+"""Pairs of gear and motor for their page: ranked pairs, the marked pair, and rejected pairs by check."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -6,29 +6,38 @@ from functools import cached_property
 
 import numpy as np
 
-from hpn.application import Application, MotorEntry, PairRank
+from hpn.account.readings import assumed_of, thermal_of
+from hpn.application import Application, Motor, MotorEntry, PairRank
 from hpn.catalogue import Catalogue
+from hpn.catalogue.gear import Gear
+from hpn.engine.candidates import candidates_of
 from hpn.engine.checks import allowed
-from hpn.engine.motors import asks_inertia_ratio, with_figures
+from hpn.engine.duty import Duty
+from hpn.engine.evaluation import STATUS, SUITABLE, evaluate
+from hpn.engine.motors import with_figures
 from hpn.engine.notice import Notice
 from hpn.engine.pair_notices import notices_on
 from hpn.engine.pairs import CODES, Pair, PairTable, pairs_at, table_of
+from hpn.engine.remedy import remedy_of
+from hpn.engine.tried import needed_of
 from hpn.explain.drawings import Subject
 from hpn.explain.drawings.plane import Plane, motor_plane
 from hpn.links.writer import to_link
 from hpn.web.door.visit import current
 from hpn.web.form.linked import LONGEST_LINK
+from hpn.words.reply import finite
+from hpn.words.wording import Sentence
 
 SHOWN, MOST_SHOWN = 30, 1000
-"""Pairs that the page lists at first, and at most."""
+"""Number of pairs that the page lists at first, and maximum."""
 
 NEAREST = 3
-"""Pairs that are named of those that fail by one check."""
+"""Number of pairs named among those that fail by the same check."""
 
 
 @dataclass(frozen=True, slots=True)
 class PairRow:
-    """A pair with the largest utilisations of its gear and of its motor's peak torque; None where there is none."""
+    """Pair with the largest utilisation of its gear and that of its motor's peak torque; None if unknown."""
 
     pair: Pair
     of_gear: float | None
@@ -37,7 +46,7 @@ class PairRow:
 
 @dataclass(frozen=True, slots=True)
 class RejectedPairs:
-    """Pairs that fail by one check: how many, of how many motors, and the nearest of them."""
+    """Pairs that fail by the same check: their number, the number of their motors, and the nearest pairs."""
 
     code: str
     count: int
@@ -47,7 +56,7 @@ class RejectedPairs:
 
 @dataclass(frozen=True)
 class PairsView:
-    """Pairs of an application with the motors of a list; `marked` names gear and motor that are looked at."""
+    """Pairs of an application with the motors of a list; `marked` names gear and motor of the marked pair."""
 
     application: Application
     motors: Sequence[MotorEntry]
@@ -71,12 +80,8 @@ class PairsView:
 
     @cached_property
     def _of_motors(self) -> list[int]:
-        """The best pair of each motor."""
-        seen, places, gears = set[int](), list[int](), len(self.table.gears.rows)
-        for place in self._ranked:
-            if place // gears not in seen:
-                seen.add(place // gears)
-                places.append(place)
+        """Places of the best pair of each motor."""
+        places: list[int] = self.table.best_of_motors(np.array(self._ranked, np.intp)).tolist()
         return places
 
     @property
@@ -96,7 +101,7 @@ class PairsView:
 
     @cached_property
     def rows(self) -> list[PairRow]:
-        """The first suitable pairs, or the best of each motor."""
+        """First suitable pairs, or best pairs of the motors."""
         places = self._ranked if self.all_pairs else self._of_motors
         return self._rows_at(places[: self.most])
 
@@ -107,7 +112,7 @@ class PairsView:
 
     @cached_property
     def chosen(self) -> PairRow | None:
-        """The pair that is looked at: the one that is marked, else the first suitable one."""
+        """Chosen pair: the marked one, else the first suitable one."""
         gears = [gear.designation for gear in self.table.gears.rows]
         names = [motor.designation for motor in self.motors]
         gear, motor = self.marked
@@ -117,22 +122,67 @@ class PairsView:
         return self.rows[0] if self.rows else None
 
     @cached_property
+    def gear(self) -> Gear | None:
+        """Gear of the chosen pair."""
+        return self.catalogue.find(self.chosen.pair.designation) if self.chosen else None
+
+    @cached_property
     def motor(self) -> MotorEntry | None:
-        """Motor of the pair that is looked at."""
+        """Motor of the chosen pair."""
         name = self.chosen.pair.motor if self.chosen else ""
         return next((motor for motor in self.motors if motor.designation == name), None)
 
     @cached_property
-    def plane(self) -> Plane | None:
-        """Torque over speed at the motor of that pair."""
-        gear = self.catalogue.find(self.chosen.pair.designation) if self.chosen else None
-        if gear is None or self.motor is None:
+    def _own(self) -> Motor | None:
+        """Motor of the chosen pair with the application's limits."""
+        return with_figures(self.application, self.motor).requirements.motor if self.motor else None
+
+    @cached_property
+    def _subject(self) -> Subject | None:
+        if self.gear is None or self.motor is None:
             return None
-        return motor_plane(Subject(with_figures(self.application, self.motor), gear, self.catalogue), current())
+        return Subject(with_figures(self.application, self.motor), self.gear, self.catalogue)
+
+    @property
+    def assumed(self) -> Sentence:
+        """Assumption on the torque of the chosen motor between its known figures."""
+        return assumed_of(self._own)
+
+    @cached_property
+    def thermal(self) -> Sentence | None:
+        """Sentence with both rules of the chosen motor's thermal load; None without a torque curve."""
+        if self._subject is None or self._own is None or not self._own.curve:
+            return None
+        figures = self._subject.of_gear
+        return thermal_of(
+            rms_Nm=figures.motor_rated_torque_Nm.item(),
+            thermal_Nm=figures.motor_thermal_torque_Nm.item(),
+            at_mean_Nm=figures.motor_mean_speed_torque_Nm.item(),
+        )
+
+    @cached_property
+    def remedy(self) -> Sentence | None:
+        """Sentence on the changes that would make the chosen pair suitable; None for a suitable one, and where its
+        resonance is too low.
+        """
+        if self._subject is None or self.gear is None or self.chosen is None:
+            return None
+        pair, application = self.chosen.pair, self._subject.application
+        resonates = self.least_Hz is not None and not (pair.drive_resonance_Hz or 0.0) >= self.least_Hz
+        if pair.status == STATUS[SUITABLE] or resonates:
+            return None
+        gears = self.catalogue.listed([self.gear])
+        [candidate] = candidates_of(evaluate(Duty.of([application]), gears, self.catalogue), 0)
+        return remedy_of(candidate, needed_of(candidate, application, self.catalogue))
+
+    @cached_property
+    def plane(self) -> Plane | None:
+        """Torque over speed at the motor of the chosen pair."""
+        return motor_plane(self._subject, current()) if self._subject else None
 
     @cached_property
     def report(self) -> str | None:
-        """Address of the PDF of that pair; None where that is too long for a link."""
+        """Address of the PDF of the chosen pair; None if it is too long for a link."""
         if self.chosen is None or self.motor is None:
             return None
         link = to_link(with_figures(self.application, self.motor)).removeprefix("/")
@@ -141,23 +191,16 @@ class PairsView:
 
     @property
     def output_at_peak_Nm(self) -> float | None:
-        """Torque i T_peak / η that the motor's peak would put on the gear, η as in the limit of the drive."""
-        gear = self.catalogue.find(self.chosen.pair.designation) if self.chosen else None
+        """Torque i T_peak / η in Nm that the motor's peak would put on the gear; η as in the drive's torque limit."""
         limit = self.chosen.pair.motor_torque_limit_Nm if self.chosen else None
-        peak = self.motor.peak_torque_Nm if self.motor else None
-        if gear is None or not limit or peak is None or gear.repeated_peak_torque_Nm is None:
+        peak = self._own.largest_torque_Nm if self._own else None
+        if self.gear is None or not limit or peak is None or self.gear.repeated_peak_torque_Nm is None:
             return None
-        return peak / limit * gear.repeated_peak_torque_Nm
-
-    @property
-    def repeated_peak_torque_Nm(self) -> float | None:
-        """T_R of the gear of that pair."""
-        gear = self.catalogue.find(self.chosen.pair.designation) if self.chosen else None
-        return gear.repeated_peak_torque_Nm if gear else None
+        return peak / limit * self.gear.repeated_peak_torque_Nm
 
     @cached_property
     def rejected(self) -> list[RejectedPairs]:
-        """Pairs that fail by the check that governs, the most frequent first."""
+        """Failing pairs by their governing check, the most frequent check first."""
         order, governing = self.table.rejected(), self.table.governing.ravel()
         fails = order[self.table.fails[order]]
         groups = []
@@ -176,9 +219,7 @@ class PairsView:
     @cached_property
     def notices(self) -> tuple[Notice, ...]:
         """Assumptions and remarks on all pairs."""
-        needs = asks_inertia_ratio(self.application) or self.least_Hz is not None
-        found = notices_on(self.application, self.motors, self.table.gears, self.catalogue, needs_inertia=needs)
-        return tuple(found)
+        return tuple(notices_on(self.application, self.motors, self.table.gears, self.catalogue, self.least_Hz))
 
     def bound(self, code: str | None) -> float:
         """Largest utilisation with which a check passes."""
@@ -188,10 +229,6 @@ class PairsView:
     def _rows_at(self, places: Sequence[int]) -> list[PairRow]:
         pairs = pairs_at(self.table, places, self.application, self.link_of)
         return [
-            PairRow(pair, _known(self.table.of_gear.item(place)), _known(self.table.peak.item(place)))
+            PairRow(pair, finite(self.table.of_gear.item(place)), finite(self.table.peak.item(place)))
             for pair, place in zip(pairs, places, strict=True)
         ]
-
-
-def _known(value: float) -> float | None:
-    return value if np.isfinite(value) else None

@@ -1,7 +1,7 @@
-"""Pasting a table or opening a file: first what would be taken, each column to be corrected, then taking it.
+"""Pasting of a table or opening of a file: first a preview, in which each column can be corrected, then taking it.
 
-`GET /paste?<form>` is the page of that; `POST /paste` answers with it, or for htmx with the preview alone. The form
-comes along as the field `link`, so that nothing typed is lost on the way.
+`GET /paste?<form>` is the page; `POST /paste` answers with it, or for htmx with the preview alone. The form is carried
+in the field `link`, so that no typed input is lost.
 """
 
 import re
@@ -36,8 +36,8 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.door.visit import current
 from hpn.web.form import link_reader
-from hpn.web.form.given import CYCLE_NAMES, Pairs, SortedQuery
 from hpn.web.form.linked import query_part
+from hpn.web.form.query import CYCLE_NAMES, Pairs, SortedQuery
 from hpn.web.form.tolerance_fields import OF_ROW
 from hpn.web.pages import calculator
 from hpn.web.pages.axis_view import OF_AXIS, PLACE, place_of
@@ -53,10 +53,11 @@ WANTED = TableBounds(CYCLE, MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 
 @dataclass(frozen=True, slots=True)
 class PasteDraft:
-    """State of the page: the form that it came from, what was given, and what can be made of it.
+    """State of the page: the form that it was opened from, the given text, and its reading.
 
-    `of` names what the choices belong to: they end when another text or file is given. `book` carries a file along that
-    is no text, where no script sends it again. `unused` are elements of a sizing of which nothing was taken.
+    `of` identifies the text or file that the choices belong to: another one discards them. `book` carries a file that
+    is not text if no script can send it again. `unused` are elements of a sizing that are not taken, and `note` names
+    those of them that act on the load.
     """
 
     link: str
@@ -71,22 +72,23 @@ class PasteDraft:
     sheet: str = ""
     book: str = ""
     unused: tuple[str, ...] = ()
+    note: Sentence | None = None
 
 
 def start(request: Request) -> Response:
-    """The page with an empty field."""
+    """Page with an empty field."""
     return _render(request, _draft(request.url.query, "", Reading()), 200)
 
 
 async def paste(request: Request) -> Response:
-    """Previews what was pasted or uploaded, or takes it."""
+    """Show a preview of a pasted or uploaded table, or take it."""
     post = PastePost()
     try:
-        post = await compute(request, "pages", _given, await read_parts(request))
+        post = await compute(request, "pages", _post_of, await read_parts(request))
         reading, content = Reading(), post.file or post.text.encode(errors="replace")
         if is_shell(content):
-            found = await compute_beside(request, "files", partial(opened, content))
-            return await compute(request, "pages", _of_sizing, request, post, found)
+            sizing = await compute_beside(request, "files", partial(opened, content))
+            return await compute(request, "pages", _of_sizing, request, post, sizing)
         if post.file or post.text.strip():
             reading = await read(request, post.file or post.text, WANTED, post.fields)
         return await compute(request, "pages", _answer, request, post, reading)
@@ -100,7 +102,7 @@ async def paste(request: Request) -> Response:
 
 @dataclass(frozen=True, slots=True)
 class PastePost:
-    """A post: the form that it came from, a text or a file, and the choices."""
+    """Posted content: the form that the page was opened from, a text or a file, and the choices."""
 
     link: str = ""
     text: str = ""
@@ -108,7 +110,7 @@ class PastePost:
     fields: Mapping[str, str] = field(default_factory=dict)
 
 
-def _given(parts: Mapping[str, bytes]) -> PastePost:
+def _post_of(parts: Mapping[str, bytes]) -> PastePost:
     fields = {name: decoded(content) for name, content in parts.items() if name != "file"}
     link, text = query_part(fields.get("link", "")), tidied(fields.get("text", ""))
     file = parts.get("file", b"")
@@ -132,7 +134,7 @@ def _answer(request: Request, post: PastePost, reading: Reading) -> Response:
 def _taken_or_shown(request: Request, fields: Mapping[str, str], draft: PasteDraft) -> Response:
     mode = fields.get("take", "").partition(":")[0]
     if mode in ("replace", "append") and draft.table and draft.table.whole:
-        return _proceed(request, taken(draft, append=mode == "append"))
+        return _proceed(request, pairs_with(draft, append=mode == "append"))
     return _render(request, draft, 422 if draft.problems else 200)
 
 
@@ -148,17 +150,18 @@ def _of_application(request: Request, link: str, text: str, take: str) -> Respon
     return _render(request, draft, 422 if draft.problems else 200)
 
 
-def _of_sizing(request: Request, given: PastePost, found: OpenedSizing) -> Response:
-    """Preview of what another tool has sized; taking it follows, once it was seen what is not used."""
-    if found.problem:
-        return _render(request, PasteDraft(given.link, problems=(found.problem,)), 422)
-    if given.fields.get("take"):
-        return _of_application(request, given.link, found.text, "all")
-    return _render(request, replace(_opened(given.link, found.text), unused=found.unused), 200)
+def _of_sizing(request: Request, post: PastePost, sizing: OpenedSizing) -> Response:
+    """Preview of another tool's sizing, which shows the unused elements, or page after taking it."""
+    if sizing.problem:
+        return _render(request, PasteDraft(post.link, problems=(sizing.problem,)), 422)
+    if post.fields.get("take"):
+        return _of_application(request, post.link, sizing.text, "all")
+    draft = replace(_opened(post.link, sizing.text), unused=sizing.unused, note=sizing.note)
+    return _render(request, draft, 200)
 
 
 def _opened(link: str, text: str) -> PasteDraft:
-    """Draft of a text that begins like an object of JSON."""
+    """Draft of a text that begins like a JSON object."""
     try:
         return PasteDraft(link, text, application=parsed(Application, text))
     except Problem as problem:
@@ -178,7 +181,7 @@ def _opened(link: str, text: str) -> PasteDraft:
 
 
 def _draft(link: str, text: str, reading: Reading) -> PasteDraft:
-    """Draft of a table, or of nothing yet."""
+    """Draft of a table, or an empty draft."""
     table = reading.table
     return PasteDraft(
         link,
@@ -194,15 +197,15 @@ def _draft(link: str, text: str, reading: Reading) -> PasteDraft:
 
 
 def is_example(link: str) -> bool:
-    """True for a form that says what the handbook's worked example says, and nothing else."""
+    """True for a form with exactly the inputs of the handbook's worked example."""
     application = link_reader.parse(pairs_of(link)).application if link else None
     return application is not None and to_link(application) == to_link(Application.worked_example())
 
 
-def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
-    """Pairs of the form with the phases of a table, instead of its own or after them.
+def pairs_with(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
+    """Pairs of the form with the phases of a table, in place of its own or after them.
 
-    In place of the worked example they begin without its pause, emergency stop and ratio.
+    If they replace the worked example, its pause, emergency stop and ratio are dropped, too.
     """
     assert draft.table is not None
     query = SortedQuery(pairs_of(draft.link))
@@ -212,7 +215,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
     if stop := draft.table.stop_Nm:
         dropped |= {name for name, symbol in BY_NAME.items() if symbol.path[0] == "emergency_stop" and name != "Nk"}
     rest = [(name, value) for name, value in query.beside() if name not in dropped]
-    if not append:  # a tolerance of one phase goes with it
+    if not append:  # tolerances of single phases go with the phases
         rest = [(name, value) for name, value in rest if name != TOLERANCE]
     rest += [("Tk", stop)] if stop else []
     names = draft.table.names or ("",) * len(draft.table.phases)
@@ -226,7 +229,7 @@ def taken(draft: PasteDraft, *, append: bool) -> list[tuple[str, str]]:
 
 
 def _proceed(request: Request, pairs: Pairs) -> Response:
-    """On to the page: by its address, and where that would be too long, right here; an axis has a page of its own."""
+    """Redirect to the live page or the axis's page; a form too long for an address gets the live page at once."""
     query = urlencode(pairs)
     if axis := _AXIS.fullmatch(dict(pairs).get(PLACE, "")):
         if len(query) > MAXIMUM_QUERY_BYTES:
@@ -249,10 +252,10 @@ def _render(request: Request, draft: PasteDraft, status: int) -> Response:
 
 
 def _picture(draft: PasteDraft) -> CyclePicture | None:
-    """Torque and speed over time of a short table that can be taken."""
+    """Torque and speed over time of a short table; None for a long or incomplete one."""
     if not draft.table or not draft.table.whole or len(draft.table.phases) > MOST_ROWS_TRIED:
         return None
-    application = link_reader.parse(taken(replace(draft, link="", example=False), append=False)).application
+    application = link_reader.parse(pairs_with(replace(draft, link="", example=False), append=False)).application
     return cycle_picture(application, None, current()) if application else None
 
 

@@ -1,4 +1,4 @@
-"""Reading of what somebody gives a page: a file in a process whose memory and time are bounded, a short text here."""
+"""Reading of texts and files given to a page: short texts on a worker, all else in a process with bounds."""
 
 import dataclasses
 from collections.abc import Callable, Collection, Mapping
@@ -17,13 +17,13 @@ from hpn.words.patterns import Pattern
 T = TypeVar("T")
 
 SHORT_CHARACTERS = 2_000
-"""Texts up to which a worker reads at once: whatever they say, that takes some milliseconds."""
+"""Length up to which a text is read on a worker; any such text takes only some milliseconds."""
 
 _PLACE = Pattern(r"([ru])([0-9]{1,6})", 7)
 
 
 async def read(request: Request, content: bytes | str, wanted: TableBounds, fields: Mapping[str, str]) -> Reading:
-    """Reading of a file or a text, by the answers in the fields of a form; raises Problem 413 or 503."""
+    """Reading of a file or text with the answers in a form's fields; raises Problem 413 or 503."""
     work = await compute(request, "pages", work_of, reading_of, content, wanted, fields)
     if isinstance(content, str) and len(content) <= SHORT_CHARACTERS:
         return await compute(request, "pages", work)
@@ -36,17 +36,17 @@ def work_of(
     wanted: TableBounds,
     fields: Mapping[str, str],
 ) -> Callable[[], T]:
-    """The call that reads. A column without a unit is in that of the wire where the reader sees the same."""
+    """Call that reads. A column without a unit is in the wire's unit if the reader uses the same unit."""
     reader = current()
     assumed = tuple(unit for unit in wanted.inputs.units if reader.measure(unit).same)
     return partial(how, content, wanted, choices_of(fields), assumed)
 
 
 def choices_of(fields: Mapping[str, str]) -> Choices:
-    """Answers to questions in the fields of a form."""
-    said: dict[str, dict[int, str]] = {"r": {}, "u": {}}
+    """Answers to the reading's questions in the fields of a form."""
+    choices: dict[str, dict[int, str]] = {"r": {}, "u": {}}
     for name, value in fields.items():
         if place := _PLACE.fullmatch(name):
-            said[place[1]][int(place[2])] = value
+            choices[place[1]][int(place[2])] = value
     named = {part.name: fields.get(part.name, "") for part in dataclasses.fields(Choices) if part.type is str}
-    return Choices(**named, roles=said["r"], units=said["u"])
+    return Choices(**named, roles=choices["r"], units=choices["u"])

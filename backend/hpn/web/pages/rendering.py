@@ -1,4 +1,4 @@
-"""Pages made of templates, and the page with the reason where a route has nothing to show."""
+"""Pages rendered from templates, and the page with the reason if a route has nothing to show."""
 
 from collections.abc import Awaitable, Callable
 from functools import wraps
@@ -14,23 +14,23 @@ from hpn.web.pages.templates import environment
 Route = Callable[[Request], Awaitable[Response]]
 
 
-def page(request: Request, template: str, status: int = 200, **shown: Any) -> Response:
-    """A page, to be asked for anew each time."""
+def page(request: Request, template: str, status: int = 200, **values: Any) -> Response:
+    """Rendered page, which caches must revalidate."""
     content = environment(request.app.state).get_template(template)
-    rendered = content.render(catalogue=request.app.state.catalogue, status=status, **shown)
+    rendered = content.render(catalogue=request.app.state.catalogue, status=status, **values)
     return HTMLResponse(rendered, status, {"Cache-Control": "no-cache"})
 
 
-def reason(request: Request, template: str, error: Problem | StoreUnavailableError, **shown: Any) -> Response:
-    """The page with the reason for a refusal, under its status."""
+def reason(request: Request, template: str, error: Problem | StoreUnavailableError, **values: Any) -> Response:
+    """Page with the reason for a refusal, with its status and headers."""
     problem = error if isinstance(error, Problem) else Problem.of(error)
-    response = page(request, template, problem.status_code, problem=problem, **shown)
+    response = page(request, template, problem.status_code, problem=problem, **values)
     response.headers.update(problem.headers or {})
     return response
 
 
 def or_reason(template: str) -> Callable[[Route], Route]:
-    """Have a route answer with the page of the reason where it raises Problem or the store is out of reach."""
+    """Decorator of a route: answers with the page of the reason if it raises Problem or StoreUnavailableError."""
 
     def guarded(route: Route) -> Route:
         @wraps(route)

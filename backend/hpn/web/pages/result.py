@@ -1,4 +1,4 @@
-"""Content of a page for a selection, computed just now or saved: the partials of the templates read it."""
+"""Content of a page for a live or saved selection; the partials of the templates read it."""
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
@@ -16,7 +16,7 @@ from hpn.engine.remedy import Alternative, Growth, condition_of, growths_of, rem
 from hpn.engine.room import with_tolerance
 from hpn.engine.selection import Selection
 from hpn.engine.tolerance_words import tolerance_of
-from hpn.engine.tried import needed_of
+from hpn.engine.tried import needed_of, tried
 from hpn.explain.comparison import lighter_miss
 from hpn.explain.drawings import Pictures, Subject, cycle_picture
 from hpn.explain.drawings.cycle import CyclePicture
@@ -32,7 +32,7 @@ from hpn.words.wording import Named, Sentence
 
 @dataclass(frozen=True, slots=True)
 class RejectedSize:
-    """The rejected gears of one size, nearest miss first."""
+    """Rejected gears of a size, nearest miss first."""
 
     size: str
     candidates: tuple[Candidate, ...]
@@ -40,11 +40,11 @@ class RejectedSize:
 
 @dataclass(frozen=True, slots=True)
 class CandidateList:
-    """The candidates as they are listed: suitable ones, then those that lack an input alone, rejected ones by size,
+    """Candidates in the order of the list: suitable ones, those that only lack an input, rejected ones by size with the
     nearest miss first, and the other unrated ones.
 
-    `ties` are runs of suitable gears of one size that differ neither in what they are ranked by nor in weight and
-    utilisation, so that L10 alone orders them.
+    `ties` are runs of suitable gears of one size with the same rank figure, weight and utilisation, so that only L10
+    orders them.
     """
 
     suitable: tuple[Candidate, ...]
@@ -61,12 +61,12 @@ class CandidateList:
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """A selection, and the candidate that the page looks at; `asked` tells whether the reader chose it.
+    """Selection, and the candidate that the page shows; `asked` is True if the reader chose it.
 
-    `application` is None where it was saved by a version with other inputs. `catalogue` is the one that the selection
-    was made from, None where that is not kept. `example` tells whether the application is the handbook's. `choosing`
-    stands before the designation in the address of a saved selection that looks at another candidate, `tail` behind
-    the live page's links: pins and labels. `links` makes the address of the same page with another application.
+    `application` is None if a version with other inputs saved it. `catalogue` is that of the selection, None if it is
+    not kept. `example` is True for the handbook's application. `choosing` precedes the designation in the address of a
+    saved selection that shows another candidate. `tail` (pins and labels) ends links to the live page. `links` makes
+    the address of the same page with another application.
     """
 
     selection: Selection
@@ -87,12 +87,12 @@ class Result:
 
     @property
     def names(self) -> Mapping[str, str]:
-        """Checks by code, as they stand inside a sentence."""
+        """Names of checks by code, for use inside a sentence."""
         return {code: self.selection.name_of(code) for code in self.selection.check_definitions}
 
     @property
     def bounds(self) -> Mapping[str | None, float]:
-        """Largest utilisation with which each check passes, by code; 1 where none governs."""
+        """Largest utilisation with which each check passes, by code; 1 for None, if no check governs."""
         return {code: allowed(code, self.utilisation) for code in (None, *self.selection.check_definitions)}
 
     @cached_property
@@ -107,7 +107,7 @@ class Result:
 
     @cached_property
     def pictures(self) -> Pictures | None:
-        """Pictures of the chosen candidate, or None where what they need is not kept."""
+        """Pictures of the chosen candidate; None if application, gear or catalogue is not kept."""
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
         subject = Subject(self.application, self.gear, self.catalogue, self.chosen)
@@ -115,18 +115,18 @@ class Result:
 
     @cached_property
     def map(self) -> GearMap:
-        """Map of the gears that were judged; empty where their catalogue is not kept."""
+        """Map of the judged gears; empty if their catalogue is not kept."""
         candidates = {candidate.designation: candidate for candidate in self.selection.candidates}
         return map_of(self.selection, candidates, self.catalogue) if self.catalogue else ()
 
     @property
     def bearing_pictures(self) -> Pictures | None:
-        """Those of the section on the output bearing."""
+        """Pictures of the section on the output bearing."""
         return self.pictures
 
     @property
     def at_least(self) -> tuple[str, float] | None:
-        """Check and utilisation of the chosen candidate as far as it is known, where its bearing lacks an input."""
+        """Check and lower bound of the chosen candidate's utilisation, if its bearing lacks an input; else None."""
         known = [
             (check.code, used)
             for check in self.chosen.checks
@@ -136,7 +136,7 @@ class Result:
 
     @cached_property
     def drive(self) -> DriveView | None:
-        """Motor of the chosen candidate, or None where what it needs is not kept."""
+        """Motor of the chosen candidate; None if application, gear or catalogue is not kept."""
         if self.application is None or self.gear is None or self.catalogue is None:
             return None
         return DriveView(self.application, self.gear, self.catalogue, self.selection, self.links)
@@ -158,7 +158,7 @@ class Result:
 
     @property
     def worst_cycle(self) -> CyclePicture | None:
-        """Typed cycle in the case in which the check that governs is worst, within its tolerances."""
+        """Typed phases within their tolerances, in the worst case of the governing check; None for a motion."""
         line = self.over.governing if self.over else None
         if (
             line is None
@@ -176,7 +176,7 @@ class Result:
 
     @property
     def failing_case(self) -> str:
-        """Address of the case in which the chosen gear fails inside its tolerances; blank for none."""
+        """Address of the case within the tolerances in which the chosen gear fails; blank without such a case."""
         worst = self.chosen.worst
         if not isinstance(worst, WorstCase) or worst.status != "unsuitable" or not self.over:
             return ""
@@ -184,25 +184,24 @@ class Result:
         return self.case(line) if line else ""
 
     def case(self, line: WorstLine) -> str:
-        """Address of the case in which a check is worst, with the gear in sight, which others may outrank there."""
+        """Address of a check's worst case; it names the gear, which others may outrank in that case."""
         return f"{self.links(line.corner.application)}&gear={self.chosen.designation}" if line.corner else ""
 
     def with_tolerance(self, line: DecidingLine) -> str:
-        """Address with a tolerance by the factor that lets the gear hold."""
+        """Address with a tolerance scaled by the factor with which the gear holds."""
         assert self.application is not None
-        return self.links(with_tolerance(self.application, line.given.path, line.allowed or 0.0))
+        return self.links(with_tolerance(self.application, line.tolerance.path, line.allowed or 0.0))
 
     @property
     def other_judgement(self) -> str:
-        """Address with gears judged by the worst case, or by the values as given where they are judged so."""
+        """Address with the other judgement of gears: by the worst case, or back by the given values."""
         assert self.application is not None
         requirements = self.application.requirements
-        changed = requirements.model_copy(update={"over_tolerance": not requirements.over_tolerance})
-        return self.links(self.application.model_copy(update={"requirements": changed}))
+        return self.links(self.application.requiring(over_tolerance=not requirements.over_tolerance))
 
     @property
     def utilisation(self) -> float:
-        """Largest utilisation that was accepted."""
+        """Largest accepted utilisation."""
         return self.application.requirements.utilisation if self.application else 1.0
 
     @property
@@ -212,12 +211,12 @@ class Result:
 
     @cached_property
     def lighter(self) -> Candidate | None:
-        """The nearest miss that is lighter than the selected gear."""
+        """Nearest miss that is lighter than the selected gear."""
         return lighter_miss(self.selection, self.selection.selected, self.gears)
 
     @cached_property
     def listed(self) -> CandidateList:
-        """The candidates as they are listed."""
+        """Candidates in the order of the list."""
         by_status: dict[str, list[Candidate]] = {"suitable": [], "unsuitable": [], "unrated": []}
         for candidate in self.selection.candidates:
             by_status[candidate.status].append(candidate)
@@ -234,16 +233,16 @@ class Result:
         )
 
     def remedy(self, designation: str) -> Sentence | None:
-        """Remedy that makes a candidate fit, as far as its catalogue figures are known."""
+        """Remedy that makes a candidate fit; None if its catalogue figures are unknown."""
         candidate = self._judged(designation)
         return remedy_of(candidate, self.alternatives(designation)) if candidate else None
 
     def conditions(self, designation: str) -> tuple[Sentence, ...]:
-        """Changes that each alone make a candidate fit, as far as its catalogue figures are known."""
+        """Changes each of which makes a candidate fit; empty if its catalogue figures are unknown."""
         return tuple(map(condition_of, self.alternatives(designation)))
 
     def alternatives(self, designation: str) -> tuple[Alternative, ...]:
-        """The same changes as figures."""
+        """Figures of the changes each of which makes a candidate fit."""
         if designation not in self._alternatives:
             candidate, alternatives = self._judged(designation), tuple[Alternative, ...]()
             if candidate and self.application and self.catalogue:
@@ -251,38 +250,45 @@ class Result:
             self._alternatives[designation] = alternatives
         return self._alternatives[designation]
 
+    def tries(self, designation: str) -> tuple[str, ...]:
+        """Links that try the alternatives of a gear's remedy, one each; none without application or catalogue."""
+        application, catalogue = self.application, self.catalogue
+        if application is None or catalogue is None:
+            return ()
+        return tuple(self.links(tried(application, one, catalogue)) for one in self.alternatives(designation))
+
     @cached_property
     def _alternatives(self) -> dict[str, tuple[Alternative, ...]]:
-        """Alternatives that were worked out, by designation."""
+        """Cache of alternatives by designation."""
         return {}
 
     def _judged(self, designation: str) -> Candidate | None:
-        """A candidate with known catalogue figures; the chosen one may stand outside the ratios and sizes asked for."""
+        """Candidate with known catalogue figures; the chosen one may be outside the required ratios and sizes."""
         chosen = self.chosen.designation == designation
         candidate = self.chosen if chosen else self.selection.candidate(designation)
         return candidate if designation in self.gears else None
 
     @property
     def columns(self) -> Mapping[str, Named]:
-        """Figures of which the list of candidates has a column."""
+        """Figures that have a column in the list of candidates."""
         return {name: named for name, named in LISTED.items() if self.chosen.says(name)}
 
     @property
     def growths(self) -> Mapping[str, tuple[Growth, ...]]:
-        """Growth of every driver of each check of the chosen candidate at which that check is at its limit."""
+        """Growth of each driver at which a check of the chosen candidate reaches its limit, by check."""
         return growths_of(self.chosen, self.utilisation)
 
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """Title and description that a chat shows for a link to a selection, in English."""
+    """Title and description of a link to a selection, which chats show; in English."""
 
     title: str
     description: str
 
 
 def preview_of(selection: Selection, title: str | None = None) -> Preview:
-    """Gear and verdict of a selection, under the title that it was saved with."""
+    """Preview with gear and verdict of a selection, under its saved title if it has one."""
     best, duty, english = selection.foremost, selection.duty, Reader(digits=DIGITS)
     verdict = f"{selection.selected}, suitable" if selection.selected else "no suitable gear"
     parts = [

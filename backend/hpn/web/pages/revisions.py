@@ -1,7 +1,6 @@
-"""Revisions of a machine or a selection: their list, two states compared cell by cell, and the next one saved."""
+"""Pages of revisions of a machine or selection: their list, two states compared cell by cell, and saving the next."""
 
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from typing import Any
 
 from fastapi import APIRouter
@@ -12,8 +11,6 @@ from starlette.responses import RedirectResponse, Response
 from hpn import ENGINE_VERSION
 from hpn.documents.revision import TODAY, RevisionBlock, decode
 from hpn.documents.summary import summary_of
-from hpn.files.export import ExportTitle
-from hpn.files.machine.changes import DifferencesExport
 from hpn.store import Machine, RevisionLine
 from hpn.store.records import DocumentKind
 from hpn.web.columns import frozen_of
@@ -22,10 +19,9 @@ from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.door.visit import absolute, current
+from hpn.web.door.visit import current
 from hpn.web.freezing import freeze
-from hpn.web.machines import FEW_AXES, found
-from hpn.web.pages import machine as machine_pages
+from hpn.web.machines import FEW_AXES, machine_of
 from hpn.web.pages.machine_view import REASON, MachineView
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.revisions_view import (
@@ -42,36 +38,36 @@ from hpn.web.pages.revisions_view import (
 )
 from hpn.web.pages.saved_list import version_of
 from hpn.web.pages.saving import REASON as SELECTION_REASON
-from hpn.web.states import State, catalogues_of, documents_of, state_of, states_of
+from hpn.web.states import PLACES, State, differences, frozen_states, states_of
 from hpn.words.wording import Sentence
 
-PLACES: Mapping[DocumentKind, str] = {"machine": "/machines", "selection": "/selections"}
 FEW_IN_ALL = 1000
-"""Axes that the list counts in all; older revisions stand in it without figures."""
+"""Maximum axes in all revisions with figures in the list; older revisions are listed without figures."""
 
 
 async def _found(request: Request, kind: DocumentKind) -> Machine:
-    return await found(request, request.path_params[{"machine": "machine", "selection": "id"}[kind]], None, kind)
+    return await machine_of(request, request.path_params[{"machine": "machine", "selection": "id"}[kind]], None, kind)
 
 
 async def shown(
-    request: Request, machine: Machine, status: int = 200, block: Mapping[str, str] | None = None, said: Any = ()
+    request: Request, machine: Machine, status: int = 200, block: Mapping[str, str] | None = None, messages: Any = ()
 ) -> Response:
-    """The page of a document's revisions, with the form of the next one as it was filled in."""
+    """Page of a document's revisions, with the form of the next one as filled in."""
     lines: list[RevisionLine] = await request.app.state.store.revisions(machine.id)
     pair = pair_of(machine, lines, request.query_params)
     states = await states_of(request, machine, *pair) if pair else None
-    brief = {line.number: await state_of(request, machine, line.label) for line in _few(lines)}
+    brief = await frozen_states(request, machine.id, _few(lines))
+    may_change = request.app.state.gate.may_change(request, machine.owner)
     values: dict[str, Any] = {
         "saved": machine,
         "place": f"{PLACES[machine.kind]}/{machine.id}",
         "lines": lines[:MOST_LINES],
         "all_lines": lines,
         "is_new": not lines or machine.updated > lines[0].created,
-        "may_change": machine_pages.may_change(request, machine),
+        "may_change": may_change,
         **next_revision(lines),
-        "said": said,
-        "may_save_today": machine_pages.may_change(request, machine) and is_working_copy(machine, lines, pair),
+        "messages": messages,
+        "may_save_today": may_change and is_working_copy(machine, lines, pair),
         "states": STATES,
         "engine_version": ENGINE_VERSION,
         "catalogue_version": request.app.state.catalogue.version,
@@ -82,7 +78,7 @@ async def shown(
 
 
 def _few(lines: list[RevisionLine]) -> list[RevisionLine]:
-    """The latest revisions, as many as may be counted."""
+    """Latest revisions, up to FEW_IN_ALL axes together."""
     few, axes = list[RevisionLine](), 0
     for line in lines[:MOST_LINES]:
         axes += max(line.axes, FEW_IN_ALL // MOST_LINES)
@@ -104,7 +100,7 @@ def _page(
     compared, today = None, None
     if states and pair:
         whole = request.query_params.get("show") == "all"
-        compared = Compared(_export(request, machine, pair, states), current(), whole)
+        compared = Compared(differences(request, machine, pair, states), current(), whole)
         today = _today(request, machine, pair, states[1], compared)
     frozen = {number: decode(state.content) for number, state in brief.items() if isinstance(state.content, bytes)}
     now = MachineView(machine, request.app.state.catalogue)
@@ -121,19 +117,11 @@ def _page(
     return page(request, "revisions.html", status, **shown, **values)
 
 
-def _export(
-    request: Request, machine: Machine, pair: tuple[str, str], states: tuple[State, State]
-) -> DifferencesExport:
-    link = absolute(request, f"{PLACES[machine.kind]}/{machine.id}/revisions?from={pair[0]}&to={pair[1]}")
-    heading = ExportTitle(machine.title or "", machine.reference or "", machine.author or "")
-    return DifferencesExport(pair, documents_of(*states), catalogues_of(*states), link, heading, made=datetime.now(UTC))
-
-
 def _today(
     request: Request, machine: Machine, pair: tuple[str, str], last: State, compared: Compared
 ) -> Compared | bool | None:
-    """The second state beside today's catalogue and engine: True where both are the same, None where it is not asked
-    here, of today itself or of many axes.
+    """Comparison of the second state with today's catalogue and engine: True if both versions are the same, None if it
+    is not made: for today itself and for many axes.
     """
     if pair[1] == TODAY:
         return None
@@ -143,11 +131,11 @@ def _today(
     if len(compared.export.documents[1].axes) > FEW_AXES:
         return None
     today = State(None, request.app.state.catalogue)
-    return Compared(_export(request, machine, (pair[1], TODAY), (last, today)), current())
+    return Compared(differences(request, machine, (pair[1], TODAY), (last, today)), current())
 
 
 async def _saved(request: Request, kind: DocumentKind) -> Response:
-    """Freezes the working copy under the label of a form, and leads back to the list."""
+    """Freeze the working copy under the label of a form, and redirect to the list."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
     machine = await _found(request, kind)
@@ -170,25 +158,25 @@ async def _saved(request: Request, kind: DocumentKind) -> Response:
 
 @or_reason(REASON)
 async def show_of_machine(request: Request) -> Response:
-    """Revisions of a machine, and two of them, the working copy or today compared."""
+    """Page of a machine's revisions, with a comparison of two states."""
     return await shown(request, await _found(request, "machine"))
 
 
 @or_reason(REASON)
 async def save_of_machine(request: Request) -> Response:
-    """Saves the working copy of a machine as a revision."""
+    """Save the working copy of a machine as a revision."""
     return await _saved(request, "machine")
 
 
 @or_reason(SELECTION_REASON)
 async def show_of_selection(request: Request) -> Response:
-    """Revisions of a selection, and two of them compared."""
+    """Page of a selection's revisions, with a comparison of two states."""
     return await shown(request, await _found(request, "selection"))
 
 
 @or_reason(SELECTION_REASON)
 async def save_of_selection(request: Request) -> Response:
-    """Saves the working copy of a selection as a revision."""
+    """Save the working copy of a selection as a revision."""
     return await _saved(request, "selection")
 
 

@@ -1,4 +1,4 @@
-"""Revisions of a document and the comparison of two of its states, as their page shows them."""
+"""Revisions of a document and the comparison of two of its states, for their page."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,14 +9,26 @@ from typing import Any, NamedTuple
 from hpn.documents.differences import DifferentAxis, DocumentDifferences
 from hpn.documents.revision import NOW, TODAY, Frozen, FrozenAxis, label_key
 from hpn.documents.summary import Summary, gear_of
-from hpn.files.machine.changes import Cell, DifferencesExport, answer_cells, cells_of, effect, input_cells
+from hpn.files.machine.changes import (
+    Cell,
+    DifferencesExport,
+    answer_cells,
+    cells_of,
+    effect,
+    has_results,
+    head_of,
+    input_cells,
+)
 from hpn.files.machine.words import bound_of, used
 from hpn.store import Machine, RevisionLine
 from hpn.words.reader import Reader
 from hpn.words.wording import N_
 
 MOST_LINES, MOST_AXES, MOST_CELLS = 100, 500, 12
-"""Revisions of the list, axes of a comparison and inputs of each that the page shows; the workbook has all."""
+"""Maximum revisions in the list, axes in a comparison and inputs per axis on the page; the workbook has all."""
+
+MOST_REVISIONS = 20
+"""Most revisions that the page of a selection or an axis names; their own page has more."""
 
 STATES = {NOW: N_("Working copy"), TODAY: N_("Today")}
 """States beside revisions."""
@@ -33,7 +45,7 @@ BLOCK = {
 
 
 class SideShown(NamedTuple):
-    """Gear of an axis in one state, and how far it is used."""
+    """Gear of an axis in one state, with utilisation, its limit, status, and utilisation as text."""
 
     gear: str | None
     utilisation: float | None
@@ -43,7 +55,7 @@ class SideShown(NamedTuple):
 
     @classmethod
     def of(cls, axis: FrozenAxis | None, reader: Reader) -> "SideShown | None":
-        """The same of an axis; None where the state lacks it."""
+        """Side of an axis; None if the state lacks it."""
         if axis is None:
             return None
         answer = axis.answer
@@ -51,7 +63,9 @@ class SideShown(NamedTuple):
 
 
 class ComparedAxis(NamedTuple):
-    """An axis in both states: cells that differ, those that are left out, and what they did to its gear."""
+    """Axis in both states: differing cells, inputs or else results, number of further ones, and their effect on its
+    gear.
+    """
 
     number: int
     name: str
@@ -60,11 +74,12 @@ class ComparedAxis(NamedTuple):
     cells: Sequence[Cell] = ()
     more: int = 0
     effect: str = ""
+    has_results: bool = False
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Two states of a document side by side; `whole` shows axes that do not differ, too."""
+    """Two states of a document side by side; `whole` includes axes that do not differ."""
 
     export: DifferencesExport
     reader: Reader
@@ -72,32 +87,37 @@ class Compared:
 
     @property
     def labels(self) -> tuple[str, str]:
-        """Labels of both."""
+        """Labels of both states."""
         return self.export.labels
 
     @cached_property
     def found(self) -> DocumentDifferences:
-        """Differences of the two."""
+        """Differences of the two states."""
         return self.export.differences
 
     @property
     def sides(self) -> tuple[Summary, Summary]:
-        """Both in brief."""
+        """Summaries of both states."""
         return self.found.side_from, self.found.side_to
 
     @property
     def cells(self) -> int:
-        """Number of inputs that differ."""
-        return sum(len(axis.inputs) for axis in self.found.axes)
+        """Number of differing inputs; a common value counts once."""
+        return sum(len(axis.inputs) for axis in self.found.axes) + self.common_cells
+
+    @property
+    def common_cells(self) -> int:
+        """Number of differing common values."""
+        return sum(one.pointer.startswith("/common/") for one in self.found.common)
 
     @property
     def changed(self) -> int:
-        """Number of axes with an input that differs, or that one state lacks."""
+        """Number of axes with a differing input, or in only one of the states."""
         return sum(bool(axis.inputs) or axis.change != "changed" for axis in self.found.axes)
 
     @property
     def axes(self) -> int:
-        """Number of axes of both."""
+        """Number of axes in either state."""
         return len(self.found.axes) + self.found.same
 
     @cached_property
@@ -118,20 +138,20 @@ class Compared:
 
     @property
     def common(self) -> list[Cell]:
-        """Title block and common values that differ."""
+        """Differing fields of the title block and common values."""
         return input_cells(self.found.common, self.reader)
 
     @property
     def inputs(self) -> list[Cell]:
-        """Inputs that differ, of a document with one axis."""
+        """Differing inputs, for a document with one axis."""
         return [cell for axis in self.found.axes for cell in input_cells(axis.inputs, self.reader)]
 
     @property
     def results(self) -> list[Cell]:
-        """Verdicts and figures that differ, of a document with one axis."""
+        """Differing verdicts and figures, for a document with one axis."""
         answered = [each for axis in self.found.axes for each in (*axis.verdicts, *axis.figures)]
         gear = next(((each.value_from, each.value_to) for each in answered if each.field == "designation"), None)
-        # Without an ordering code the selected gear is the gear, which is said once.
+        # Without an ordering code the selected gear is the gear; it is shown once.
         once = [each for each in answered if each.field != "selected" or (each.value_from, each.value_to) != gear]
         return answer_cells(once, self.reader)
 
@@ -143,7 +163,7 @@ class Compared:
 
     @cached_property
     def largest(self) -> tuple[str | None, str | None]:
-        """Largest utilisation of a suitable gear in both, as the axis itself shows it; None without such a gear."""
+        """Largest utilisation of a suitable gear in each state, as its axis shows it; None without such a gear."""
         one, other = (
             next((used(axis, self.reader) for axis in document.axes if axis.number == side.utilisation_axis), None)
             for document, side in zip(self.export.documents, self.sides, strict=True)
@@ -152,13 +172,18 @@ class Compared:
 
     @cached_property
     def rows(self) -> list[ComparedAxis]:
-        """Axes that are shown."""
+        """Axes to show."""
         rows = [self._row(axis) for axis in self.found.axes[:MOST_AXES]]
         return rows + self._same(MOST_AXES - len(rows)) if self.whole else rows
 
     @property
+    def cells_head(self) -> str:
+        """Head of the column with their cells."""
+        return head_of(self.found.axes)
+
+    @property
     def left_out(self) -> int:
-        """Number of axes that would stand below."""
+        """Number of further axes that are not shown."""
         return (self.axes if self.whole else len(self.found.axes)) - len(self.rows)
 
     def _row(self, axis: DifferentAxis) -> ComparedAxis:
@@ -172,6 +197,7 @@ class Compared:
             cells[:MOST_CELLS],
             max(0, len(cells) - MOST_CELLS),
             effect(axis, sides, self.reader),
+            has_results(axis),
         )
 
     def _same(self, most: int) -> list[ComparedAxis]:
@@ -185,8 +211,8 @@ class Compared:
 
 
 def pair_of(machine: Machine, lines: Sequence[RevisionLine], wanted: Mapping[str, str]) -> tuple[str, str] | None:
-    """Labels of the states that an address compares; else of the latest revision with what is new since, or with the
-    one before. None without a revision.
+    """Labels of the states that an address compares; by default the latest revision and newer changes, or the latest
+    two revisions. None without a revision.
     """
     if not lines:
         return None
@@ -197,7 +223,7 @@ def pair_of(machine: Machine, lines: Sequence[RevisionLine], wanted: Mapping[str
 
 
 def is_working_copy(machine: Machine, lines: Sequence[RevisionLine], pair: tuple[str, str] | None) -> bool:
-    """True where the state that today is compared with is the working copy, so that the next revision freezes it."""
+    """True if the state compared with today is the working copy, so that the next revision freezes it."""
     if pair is None or machine.saved is None:
         return False
     state = pair[0] if pair[1] == TODAY else pair[1]
@@ -205,7 +231,7 @@ def is_working_copy(machine: Machine, lines: Sequence[RevisionLine], pair: tuple
 
 
 def moments_of(pair: tuple[str, str] | None, lines: Sequence[RevisionLine]) -> str:
-    """Days of the revisions that are compared, with their authors."""
+    """Text with dates and authors of the compared revisions."""
     by_label = {line.label: line for line in lines}
     shown = [by_label[label] for label in pair or () if label in by_label]
     days = dict.fromkeys(line.created.strftime("%Y-%m-%d") for line in shown)
@@ -214,20 +240,20 @@ def moments_of(pair: tuple[str, str] | None, lines: Sequence[RevisionLine]) -> s
 
 
 def gears_shown(documents: Mapping[int, Frozen], reader: Reader) -> dict[int, SideShown | None]:
-    """Gear of the first axis of each document, which is the only one of a selection."""
+    """Gear of the first axis of each document; a selection has only this axis."""
     firsts = {number: next(iter(document.axes), None) for number, document in documents.items()}
     return {number: SideShown.of(axis, reader) for number, axis in firsts.items()}
 
 
 def written(label: str, lines: Iterable[RevisionLine]) -> str:
-    """A label in the case in which it was given, so that lists mark it; any other as it is."""
+    """Label in the case of its revision or state, so that lists mark it; an unknown label is unchanged."""
     key = label_key(label)
     return key if key in STATES else next((line.label for line in lines if label_key(line.label) == key), label)
 
 
 def next_label(lines: Sequence[RevisionLine]) -> str:
-    """Label that follows the latest, where that is a letter or ends in a number; else the first letter that is free."""
-    taken = {label_key(line.label) for line in lines}
+    """Label after the latest if that is a letter or ends in a number, and it is free; else the first free letter."""
+    labels = {label_key(line.label) for line in lines}
     latest = lines[0].label if lines else ""
     head = latest.rstrip("0123456789")
     following = []
@@ -235,10 +261,10 @@ def next_label(lines: Sequence[RevisionLine]) -> str:
         following = [f"{head}{int(latest[len(head) :]) + 1}"]
     elif len(latest) == 1 and latest.upper() in ascii_uppercase[:-1]:
         following = [chr(ord(latest) + 1)]
-    return next((label for label in (*following, *ascii_uppercase) if label_key(label) not in taken), "")
+    return next((label for label in (*following, *ascii_uppercase) if label_key(label) not in labels), "")
 
 
 def next_revision(lines: Sequence[RevisionLine]) -> dict[str, Any]:
-    """The blank form that saves the next revision."""
+    """Blank form that saves the next revision."""
     label = next_label(lines)
-    return {"next": label, "block": {**dict.fromkeys(BLOCK, ""), "label": label}, "fields": BLOCK, "said": ()}
+    return {"next": label, "block": {**dict.fromkeys(BLOCK, ""), "label": label}, "fields": BLOCK, "messages": ()}

@@ -1,7 +1,7 @@
-"""The page of a saved selection, and a copy of it on the live page."""
+"""Page of a saved selection, and a copy of it on the live page."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -16,27 +16,28 @@ from hpn.account.account import Account
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.catalogue.ordering import read_ordering_code
+from hpn.documents.revision import decode
 from hpn.engine.selection import Selection
 from hpn.explain.changes import ReplyChange
 from hpn.explain.comparison import Row, rows_of
 from hpn.explain.differences import FigureDifference
 from hpn.files.export import DIGITS
 from hpn.files.report.content import qr_code
+from hpn.links.labels import query_of
 from hpn.store import ID, Machine, SavedSelection
-from hpn.web.archive import Reopened, found, url_of
+from hpn.web.archive import Reopened, on_saved, url_of
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES, admit
 from hpn.web.door.visit import absolute, current
-from hpn.web.form.given import visible
+from hpn.web.form.query import visible
 from hpn.web.pages import calculator
-from hpn.web.pages.machine import may_change
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.result import Result
-from hpn.web.pages.revisions_view import next_label
+from hpn.web.pages.revisions_view import MOST_REVISIONS, gears_shown, next_label
 from hpn.web.pages.saving import REASON
 from hpn.words.wording import N_, Sentence
 
 DIFFERENCES_ON_PAGE, MOST_ROWS = 100, 100
-"""Differences, and rows of a table of inputs, that the page shows."""
+"""Maximum differences, and rows of a table of inputs, on the page."""
 
 EXPORTS = (
     ("/report.pdf", N_("PDF"), "", "report"),
@@ -46,49 +47,48 @@ EXPORTS = (
 )
 """Files of a saved selection: end of its address, title, format, and the extra that makes it."""
 
-MOST_REVISIONS = 20
-"""Revisions that the page itself names; their own page has more."""
-
 
 @or_reason(REASON)
 async def show_selection(request: Request) -> Response:
-    """The selection as it was saved, and beside it what today's engine and catalogue say differently."""
+    """Page of a selection as saved, with the differences of today's engine and catalogue."""
     id = request.path_params["id"]
     if (seen := visible(id)) != id and ID.fullmatch(seen):
         return RedirectResponse(f"/selections/{seen}?{request.url.query}".removesuffix("?"), 308)
     machine: Machine | None = await request.app.state.store.find_machine(id, "selection")
     label = request.query_params.get("revision")
-    return await found(request, id, partial(_shown, request, machine), label)
+    frozen = await request.app.state.store.revision_contents(id, MOST_REVISIONS) if machine else {}
+    return await on_saved(request, id, partial(_shown, request, machine, frozen), label)
 
 
 class WorkingCopy(NamedTuple):
-    """Working copy of a selection: its page, and whether it has changed since the latest revision."""
+    """Working copy of a selection: its page, and True if it has changed since the latest revision."""
 
     place: str
     is_newer: bool
 
     @classmethod
     def of(cls, machine: Machine, saved: SavedSelection) -> "WorkingCopy":
-        """That of a document with one axis."""
+        """Working copy of a document with one axis."""
         (axis,) = machine.items
         return cls(f"/machines/{machine.id}/axes/{axis.number}", axis.updated > saved.revisions[0].created)
 
 
-def _shown(request: Request, machine: Machine | None, reopened: Reopened) -> Response:
+def _shown(request: Request, machine: Machine | None, frozen: Mapping[int, bytes], reopened: Reopened) -> Response:
     values = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
     values |= {
         "working": WorkingCopy.of(machine, reopened.saved) if machine else None,
-        "may_change": machine is not None and may_change(request, machine),
+        "may_change": machine is not None and request.app.state.gate.may_change(request, machine.owner),
         "next": next_label(reopened.saved.revisions),
+        "gears": gears_shown({number: decode(content) for number, content in frozen.items()}, current()),
     }
     address = absolute(request, url_of(reopened.saved.id))
     return page(request, "selection.html", address=address, qr_code=qr_code(address), **values)
 
 
 async def copy_selection(request: Request) -> Response:
-    """The live page with a copy of what was saved, for a duty cycle that is too long for a link."""
+    """Live page with a copy of a saved selection whose duty cycle is too long for a link."""
     label = request.query_params.get("revision")
-    return await found(request, request.path_params["id"], partial(_copied, request), label)
+    return await on_saved(request, request.path_params["id"], partial(_copied, request), label)
 
 
 def _copied(request: Request, reopened: Reopened) -> Response:
@@ -132,7 +132,7 @@ def result_of(
     then: Catalogue | None,
     designation: str = "",
 ) -> Result:
-    """Saved result as the templates read it, with the gear that is asked for or that its page shows first."""
+    """Saved result for the templates, with the requested gear, else the one that its page shows first."""
     earlier = "" if saved.label == saved.revisions[0].label else f"revision={saved.label}&"
     chosen = selection.candidate(designation or saved.designation or "") or selection.foremost
     return Result(
@@ -142,17 +142,18 @@ def result_of(
         asked=chosen is not selection.foremost,
         catalogue=then,
         choosing=f"{url_of(saved.id)}?{earlier}gear=",
+        tail=query_of({"title": saved.title or "", "ref": saved.reference or ""}),
     )
 
 
 def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[Row]:
-    """Published figures of a gear then and today; none where the catalogue of then is lost."""
+    """Published figures of a gear then and today; empty if the former catalogue lacks the gear or is not kept."""
     gears = [one.by_designation.get(designation) if one else None for one in (then, today)]
     return rows_of(*(published.ranged(published.published(gear)) for gear in gears)) if gears[0] else []
 
 
 def _changed_figures(reopened: Reopened, today: Catalogue, gear: str) -> list[tuple[str, Row]]:
-    """Published figures of a gear and of the listed motor that differ, with the designation of either."""
+    """Differing published figures of a gear and of the listed motor, each with its designation."""
     if reopened.then is None:
         return []
     catalogues, motor = (reopened.then, today), reopened.application and reopened.application.requirements.motor
@@ -163,24 +164,19 @@ def _changed_figures(reopened: Reopened, today: Catalogue, gear: str) -> list[tu
 
 
 def _gears(figures: Sequence[FigureDifference] | None, *, gone: bool) -> list[str]:
-    """Candidates of which today's catalogue publishes other figures, or those that it lacks."""
+    """Candidates with other figures in today's catalogue, or with `gone` those that it lacks."""
     gears = {
         difference.candidate
         for difference in figures or ()
         if difference.candidate and (difference.field == "designation") == gone
     }
-    return sorted(gears, key=_number)
+    return sorted(gears, key=lambda gear: [int(digits) for digits in re.findall(r"\d+", gear)])  # size, then ratio
 
 
 def _ordering(saved: SavedSelection, catalogue: Catalogue) -> str:
-    """The saved ordering code where today's catalogue has no such gear or output version, else empty."""
+    """Saved ordering code if today's catalogue lacks its gear or output version, else empty."""
     code = saved.ordering_code or ""
     return code if code and isinstance(read_ordering_code(catalogue, code), Sentence) else ""
-
-
-def _number(designation: str) -> list[int]:
-    """Sort key of gears: size, then ratio."""
-    return [int(digits) for digits in re.findall(r"\d+", designation)]
 
 
 router = APIRouter(include_in_schema=False)

@@ -1,4 +1,4 @@
-"""The list of saved selections: newest first, in parts, searched; what stands in it is renamed and deleted there."""
+"""List of saved selections: newest first, in parts, searched; selections are renamed and deleted there."""
 
 from collections.abc import Mapping
 from typing import Any, Literal
@@ -33,7 +33,7 @@ NO_SUCH_PART = N_("This part of the list can’t be found; its address is incomp
 
 
 class SelectionFilter(Model):
-    """Filter of the list: those of a reference, with every word of a search, or with another verdict today."""
+    """Filter of the list: by reference, by every word of a search, or by another verdict today."""
 
     reference: Line | None = None
     search: Line | None = None
@@ -42,7 +42,7 @@ class SelectionFilter(Model):
 
 @or_reason(REASON)
 async def show_selections(request: Request) -> Response:
-    """Saved selections, newest first. `/api/v1/selections` says the same as JSON, also to a browser."""
+    """Page of saved selections, newest first. `/api/v1/selections` is the same as JSON, also for a browser."""
     query = {name: request.query_params.get(name, "") for name in ("search", "reference", "differs")}
     versions = versions_of(request.app.state)
     cursor = request.query_params.get("cursor") or None
@@ -76,7 +76,7 @@ async def show_selections(request: Request) -> Response:
 
 @or_reason(REASON)
 async def rename_selection(request: Request) -> Response:
-    """Gives a saved selection another title and reference, and leads back to the list."""
+    """Rename a saved selection (title and reference), and redirect to the list."""
     return await _changed(request, _rename)
 
 
@@ -87,7 +87,7 @@ async def _rename(request: Request, saved: SavedSelection, fields: dict[str, str
 
 
 def version_of(fields: Mapping[str, str]) -> int | None:
-    """Version of what a form was made for, None where it says none; one that can't be is none that there is."""
+    """Version of a form's subject when the form was made; None if blank, -1, which never exists, if malformed."""
     text = fields.get("version", "")
     return (int(text) if text.isascii() and text.isdigit() and len(text) < 10 else -1) if text else None
 
@@ -98,7 +98,7 @@ def changed_since() -> Problem:
 
 
 def names_of(fields: Mapping[str, str], saved: SavedSelection | Machine) -> dict[str, str | None]:
-    """Title and reference of a form that renames; Problem 422 for what can't be one, unless it was one before."""
+    """Title and reference of a form that renames; Problem 422 for an invalid one, unless it is unchanged."""
     names = {"title": fields.get("title", "").strip(), "ref": fields.get("ref", "").strip()}
     faults = [
         Sentence("{field}: {message}", {"field": TITLE_BLOCK[name], "message": fault}, ("field",))
@@ -113,7 +113,7 @@ def names_of(fields: Mapping[str, str], saved: SavedSelection | Machine) -> dict
 
 @or_reason(REASON)
 async def ask_to_delete(request: Request) -> Response:
-    """The question whether a saved selection is to go for good."""
+    """Page that asks for confirmation before a saved selection is deleted."""
     saved = await changeable(request, request.path_params["id"])
     back = _back(request.query_params.get("back", ""))
     return await compute(request, "pages", page, request, "selection_delete.html", saved=saved, back=back)
@@ -121,7 +121,7 @@ async def ask_to_delete(request: Request) -> Response:
 
 @or_reason(REASON)
 async def delete_selection(request: Request) -> Response:
-    """Deletes a saved selection for good, and leads back to the list."""
+    """Delete a saved selection permanently, and redirect to the list."""
     return await _changed(request, _delete)
 
 
@@ -131,7 +131,7 @@ async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str
 
 
 async def _changed(request: Request, change: Any) -> Response:
-    """Redirect after a change of a saved selection that the list has asked for."""
+    """Make a change of a saved selection from its list; redirect to the list."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
     saved = await changeable(request, request.path_params["id"])
@@ -141,7 +141,7 @@ async def _changed(request: Request, change: Any) -> Response:
 
 
 def _back(address: str) -> str:
-    """Part of the list that a change was asked for on, and no other place."""
+    """Address of the part of the list that a change came from; the whole list for any other address."""
     query = address.removeprefix(f"{ADDRESS}?")
     return address if query != address and query.isascii() and query.isprintable() else ADDRESS
 

@@ -1,4 +1,4 @@
-"""Saving what the live page shows, and the page that says why something can't be saved or shown."""
+"""Saving of the live page's selection, and the page with the reason why a selection can't be saved or shown."""
 
 import hashlib
 import re
@@ -22,22 +22,22 @@ from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.form import link_reader
 from hpn.web.form.form import Form
-from hpn.web.form.given import Pairs
 from hpn.web.form.linked import query_part
+from hpn.web.form.query import Pairs
 from hpn.web.pages import calculator
 from hpn.web.pages.calculator import LiveResult
 from hpn.web.pages.rendering import reason
 from hpn.words.wording import N_
 
 REASON = "selection_refused.html"
-"""Page that says why something can't be saved or shown."""
+"""Page with the reason why a selection can't be saved or shown."""
 
 ONCE = re.compile(r"[A-Za-z0-9_-]{22}")
 
 
 @dataclass(frozen=True, slots=True)
-class Posted:
-    """Content of a form that saves, and the key by which it counts once however often it is sent."""
+class SaveForm:
+    """Content of a form that saves, and the key that saves it once, however often it is sent."""
 
     pairs: Pairs
     once: str
@@ -45,9 +45,9 @@ class Posted:
 
     @property
     def key(self) -> str | None:
-        """Idempotency key: sent twice the form saves once, edited it saves another.
+        """Idempotency key: a form sent twice saves once, an edited form saves another selection.
 
-        The blank keeps it apart from the keys of API callers.
+        The blank distinguishes it from the keys of API callers.
         """
         if ONCE.fullmatch(self.once) is None:
             return None
@@ -55,21 +55,21 @@ class Posted:
 
     @property
     def link(self) -> str:
-        """Address of what it says, without the title block."""
+        """Address of the form's content without the title block."""
         return "/?" + urlencode([pair for pair in self.pairs if pair[0] not in TITLE_BLOCK])
 
     @property
     def address(self) -> str:
-        """Address of the live page with all that it says; its start page where that is too long for one."""
+        """Address of the live page with the form's whole content; the start page if that is too long."""
         whole = self.link + query_of({name: self.form.labels[name] for name in TITLE_BLOCK})
         return whole if len(whole) <= MAXIMUM_QUERY_BYTES else "/"
 
 
 async def save_from_page(request: Request) -> Response:
-    """Saves what the live page shows, and leads to the page of the saved selection."""
+    """Save the selection of the live page, and redirect to the page of the saved selection."""
     require_same_origin(request)
     body = await read_form(request)
-    posted = await compute(request, "pages", _posted, body)
+    posted = await compute(request, "pages", _read_form, body)
     try:
         owner, catalogue = request.state.api_key, request.app.state.catalogue
         draft = await compute(request, "pages", _draft, posted, catalogue, owner)
@@ -81,18 +81,18 @@ async def save_from_page(request: Request) -> Response:
     return await compute(request, "pages", _refused, request, problem, posted)
 
 
-def _posted(body: bytes) -> Posted:
-    """Fields of the form; `link` stands for those of an address, and what is given beside it goes first."""
+def _read_form(body: bytes) -> SaveForm:
+    """Fields of the form; `link` adds those of an address that the form itself lacks."""
     fields = pairs_of(body)
     named = dict(fields)
     own = [(name, text) for name, text in fields if name not in ("link", "once")]
     names = {name for name, _ in own}
     linked = pairs_of(query_part(named.get("link", "")))
     pairs = [*own, *(pair for pair in linked if pair[0] not in names)]
-    return Posted(pairs, named.get("once", ""), link_reader.parse(pairs))
+    return SaveForm(pairs, named.get("once", ""), link_reader.parse(pairs))
 
 
-def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:
+def _draft(posted: SaveForm, catalogue: Catalogue, owner: str | None) -> Draft:
     form, answer = calculator.answered(posted.form, catalogue)
     if answer is None:
         errors = [((problem.name,), problem.message.text) for problem in form.problems]
@@ -103,16 +103,16 @@ def _draft(posted: Posted, catalogue: Catalogue, owner: str | None) -> Draft:
 
 
 def _code(form: Form, answer: LiveResult) -> str | None:
-    """Ordering code as the page shows it; none of a gear that does not suit and that nobody has chosen."""
+    """Ordering code as the page shows it; None for an unsuitable gear that the reader has not chosen."""
     if answer.order.problem:
         raise Problem(422, answer.order.problem, [(("order_motor",), answer.order.problem)])
     chosen = form.gear or answer.selection.selected or any(answer.order.labels.values())
     return answer.order.text if chosen else None
 
 
-def _refused(request: Request, problem: Problem, posted: Posted) -> Response:
-    """Page with the reason, which still has what was typed."""
-    spent = problem.status_code == 410  # somebody who saves it again means to
+def _refused(request: Request, problem: Problem, posted: SaveForm) -> Response:
+    """Page with the reason, which keeps the typed inputs."""
+    spent = problem.status_code == 410  # saving it again is then deliberate
     once_more = calculator.once_key() if spent else posted.once
     return reason(request, REASON, problem, posted=posted, form=posted.form, once_more=once_more)
 

@@ -1,6 +1,7 @@
-"""The templates, and what they all use: texts, numbers and sentences in the language and units of the reader."""
+"""Templates, and their common functions: texts, numbers and sentences in the reader's language and units."""
 
 import re
+import shutil
 from collections.abc import Callable, Iterable
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -25,6 +26,8 @@ from hpn.explain.comparison import ALIKE
 from hpn.explain.drawings import Figure
 from hpn.explain.drawings.picture import beyond_limit
 from hpn.explain.drawings.svg import markup
+from hpn.files.machine.inputs import COLUMNS
+from hpn.fleet.faults import Reason
 from hpn.installed import data_folder, has_extra
 from hpn.links import row_symbols, symbols
 from hpn.links.rows import BODY_COLUMNS, LOADS, MOVE_COLUMNS, ROWS_IN_TABLE
@@ -32,6 +35,7 @@ from hpn.physics.motion.moves import Move
 from hpn.web.door.visit import address, current
 from hpn.web.form import ways
 from hpn.web.form.linked import carried_pairs, onward
+from hpn.web.form.refusals import MISSING
 from hpn.web.pages import assets
 from hpn.web.pages.notes import head_and_reason, note_groups
 from hpn.web.pages.result import preview_of
@@ -46,18 +50,18 @@ TEMPLATES, COMPILED = data_folder("frontend/templates"), assets.DIST / "template
 
 
 class Compiled(FileSystemBytecodeCache):
-    """Compiled templates by their names, so that they are found again in a tree that has been moved."""
+    """Compiled templates by name, so that they are still found after their folder has moved."""
 
     def get_cache_key(self, name: str, filename: str | None = None) -> str:
-        """Key of a template; the source that it was compiled from stands in the file itself."""
+        """Key of a template; the file itself identifies the source that it was compiled from."""
         return super().get_cache_key(name)
 
 
 class ReadOnly(Compiled):
-    """Templates as the build compiled them, which takes a third of a start; what has changed since is compiled anew."""
+    """Templates compiled by the build, as compiling takes a third of a start; changed ones are compiled anew."""
 
     def dump_bytecode(self, bucket: Bucket) -> None:
-        """Keep nothing: a service writes nothing beside its data."""
+        """Store nothing: a service writes only its data."""
 
 
 JINJA = r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}"
@@ -67,14 +71,14 @@ BREAK = re.compile(rf"({JINJA})|\n", re.DOTALL)
 BLOCK = "a|button|caption|dd|dt|figcaption|figure|h[1-6]|label|li|option|p|summary|td|th"
 EDGE = re.compile(rf"(<(?:{BLOCK})\b{WITHIN}>)\n|\n(</(?:{BLOCK})>|(?=<dd\b))", re.DOTALL)
 UNSEEN = "{#\n#}"
-"""A line break that counts in a template and is none in the page."""
+"""Line break that counts in a template but does not appear in the page."""
 
 
 class Compact(FileSystemLoader):
-    """Templates without the whitespace of their layout: indentation, breaks in tags and at the edges of blocks."""
+    """Loads templates without layout whitespace: indentation, line breaks in tags and at the edges of blocks."""
 
     def get_source(self, environment: Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
-        """Source of a template as it is compiled: its lines keep their numbers."""
+        """Source of a template for compiling; its lines keep their numbers."""
         source, path, is_current = super().get_source(environment, template)
         source = re.sub(r"^[ \t]+", "", source, flags=re.MULTILINE)
         source = EDGE.sub(lambda edge: f"{edge[1]}{UNSEEN}" if edge[1] else f"{UNSEEN}{edge[2]}", source)
@@ -82,7 +86,7 @@ class Compact(FileSystemLoader):
 
 
 def environment(state: State) -> Environment:
-    """Templates of an application, with what they all use; made once per application."""
+    """Templates of an application with their common functions; made once per application."""
     if not hasattr(state, "templates"):
         state.templates = environment_of(assets.assets_of(state))
     templates: Environment = state.templates
@@ -90,24 +94,28 @@ def environment(state: State) -> Environment:
 
 
 def environment_of(static: assets.Assets) -> Environment:
-    """Templates as a service uses them."""
+    """Templates for a service."""
     return _templates(static, ReadOnly(str(COMPILED)))
 
 
 def prepare(templates: Environment) -> None:
-    """Load all templates, so that the first page need not wait for it."""
+    """Load all templates, so that the first page need not wait for them."""
     for name in templates.list_templates():
         templates.get_template(name)
 
 
 def compile_all() -> None:
-    """Write what templates compile to, for services to load: a step of the build."""
-    COMPILED.mkdir(exist_ok=True)
+    """Write compiled templates for services to load: a step of the build.
+
+    A template depends on the functions here as well as on its text, so nothing compiled before is kept.
+    """
+    shutil.rmtree(COMPILED, ignore_errors=True)
+    COMPILED.mkdir()
     prepare(_templates(assets.Assets.load(), Compiled(str(COMPILED))))
 
 
 def _templates(static: assets.Assets, compiled: Compiled) -> Environment:
-    """Templates for any reader. `_()` takes a format, the filter `t` a text of the domain that may hold a `%`."""
+    """Templates for any reader. `_()` takes a format, the filter `t` a text of the domain that may contain a `%`."""
     templates = Environment(
         loader=Compact(TEMPLATES),
         bytecode_cache=compiled,
@@ -126,11 +134,11 @@ def _templates(static: assets.Assets, compiled: Compiled) -> Environment:
     return templates
 
 
-# --- For whoever reads the page ---------------------------------------------------------------------------------------
+# --- For the reader of the page ---------------------------------------------------------------------------------------
 
 
 def _for_reader(method: str) -> Callable[..., Any]:
-    # With the context, because Jinja works out filters of constants only once otherwise.
+    # With the context, as otherwise Jinja evaluates filters of constants only once.
     def filtered(_: Context, *arguments: Any) -> Any:
         return getattr(current(), method)(*arguments)
 
@@ -138,12 +146,12 @@ def _for_reader(method: str) -> Callable[..., Any]:
 
 
 def _as_mathml(write: Callable[..., str]) -> Callable[..., Markup]:
-    return pass_context(lambda _, formula, **given: Markup(write(current(), formula, **given)))
+    return pass_context(lambda _, formula, **options: Markup(write(current(), formula, **options)))
 
 
 @lru_cache(maxsize=4096)
 def _written(reader: Reader, value: float | None, unit: str, beside: float | None) -> str:
-    """A number of the wire as a reader sees it; most numbers of a page are the catalogue's, again and again."""
+    """Number of the wire in the reader's notation; cached, as pages repeat the catalogue's numbers."""
     return reader.figure(value, unit, beside)
 
 
@@ -154,21 +162,23 @@ def _figure(_: Context, value: float | None, unit: str = "", beside: float | Non
 
 @pass_context
 def _say(_: Context, message: Sentence) -> str:
-    """Message on an input, beside a field that shows its unit."""
+    """Message on an input, for display beside a field that shows the unit."""
     reader = current()
     return message.render(reader.text, reader.bound)
 
 
 @pass_context
 def _reason(_: Context, candidate: Candidate, utilisation: float) -> str:
-    """Reason for the place of a candidate; `utilisation` is the user's u."""
-    return current().told(reason_of(candidate, utilisation))
+    """Reason for the rank of a candidate; `utilisation` is the user's u."""
+    return current().sentence(reason_of(candidate, utilisation))
 
 
 @pass_context
 def _as_read(_: Context, number: str, unit: str = "") -> str:
-    """A number of a pasted table with every digit and the reader's marks: `1 234.5`; one of the wire in their unit."""
+    """Number of a pasted table with all digits and the reader's marks: `1 234.5`; with a unit in the reader's unit."""
     measure = current().measure(unit)
+    if "e" in number.lower() and unit:
+        return current().exact(float(number), unit)
     number = number if measure.same else measure.written(float(number), 6)
     sign = "\N{MINUS SIGN}" if number.startswith("-") else ""
     whole, point, fraction = number.lstrip("+-").partition(".")
@@ -179,7 +189,7 @@ def _as_read(_: Context, number: str, unit: str = "") -> str:
 
 @pass_context
 def _as_typed(_: Context, value: float, unit: str) -> str:
-    """A figure of the catalogue as the reader would type it into a field, in their unit and with their decimal mark."""
+    """Figure of the catalogue as typed into a field, in the reader's unit and with their decimal mark."""
     reader = current()
     measure = reader.measure(unit)
     return (f"{value:.12g}" if measure.same else measure.written(value, 6)).replace(".", reader.decimal)
@@ -189,17 +199,17 @@ PARTS = re.compile(r"(?<=[a-zäöüß]{3})(?=drehzahl|(?<!dreh)zahl|moment|antei
 
 
 def parted(name: str) -> str:
-    """A name with soft hyphens between its parts, for a narrow column: not every browser knows where to part words."""
+    """Name with soft hyphens between its parts, for a narrow column, as some browsers can't hyphenate words."""
     return PARTS.sub("\N{SOFT HYPHEN}", name)
 
 
 def with_symbols(text: str) -> Markup:
-    """A sentence with the handbook's symbols set as such: `T_R` with R as an index."""
+    """Sentence with the handbook's symbols typeset: `T_R` with R as a subscript."""
     return Markup().join(map(_set, sentence(text)))
 
 
 def as_formula(text: str) -> Markup:
-    """A symbol or formula as the tables write it, in which single letters are set, too."""
+    """Symbol or formula typeset as in the tables, single letters included."""
     return Markup().join(map(_set, formula(text)))
 
 
@@ -213,7 +223,7 @@ def _set(part: Part) -> Markup:
 
 @pass_context
 def _followed(_: Context, moves: Iterable[Move]) -> dict[str, str]:
-    """Figures of moves that follow from those given, each by the field of the form where it would stand."""
+    """Figures of moves that follow from the given ones, by the fields of the form in which they belong."""
     reader = current()
     return {
         f"{symbol.name}-{at}": reader.figure(value, symbol.unit)
@@ -223,7 +233,7 @@ def _followed(_: Context, moves: Iterable[Move]) -> dict[str, str]:
 
 
 def _of_line(method: str) -> Callable[..., str]:
-    # With the context, likewise.
+    # With the context for the same reason.
     def read(_: Context, line: Line) -> str:
         text: str = getattr(line, method)(current())
         return text
@@ -233,35 +243,39 @@ def _of_line(method: str) -> Callable[..., str]:
 
 @pass_context
 def _stiffness(_: Context, candidate: Candidate) -> str:
-    """Natural frequency and position error of a candidate."""
-    return current().told(stiffness_of(candidate))
+    """Sentence on natural frequency and position error of a candidate."""
+    return current().sentence(stiffness_of(candidate))
 
 
 def _inline(drawing: Element | list[Element]) -> Markup:
-    """A drawing, or one for each kind of place, as part of a page; an XML library made it, which escapes its texts."""
+    """Drawing, or one for each kind of place, as part of a page; the XML library that made it escapes its texts."""
     text = "".join(map(markup, drawing if isinstance(drawing, list) else [drawing]))
-    text = text.replace(' xmlns="http://www.w3.org/2000/svg"', "")  # what stands in HTML needs none
+    text = text.replace(' xmlns="http://www.w3.org/2000/svg"', "")  # not needed within HTML
     return Markup(_FINER.sub(r"\1", text))
 
 
 _FINER = re.compile(r"(?<=\d)(\.\d)\d{1,2}(?=[ LZHV\"])")
-"""Less than a tenth of a unit in coordinates, which no screen shows."""
+"""Decimals of coordinates below a tenth of a unit, which no screen shows."""
 
 
 def _as_attribute(figure: Figure) -> Markup:
-    """A figure as JSON in a single-quoted attribute, where its many double quotes may stand as they are."""
+    """Figure as JSON for a single-quoted attribute, in which its many double quotes need no escape."""
     text = orjson.dumps(figure).decode()
     return Markup(text.replace("&", "&amp;").replace("'", "&#39;").replace("<", "&lt;"))
 
 
-_COLUMNS = {each.place: each.named.name for each in symbols.AXIS_INPUTS.by_role.values()}
-"""Names of the inputs of an axis by their columns."""
+def _named_reason(reason: Reason, named: bool) -> Sentence:
+    """Sentence on a reason with the name of its input, or behind its column as in the answers."""
+    if not named and reason.column:
+        return Sentence("{input}: {text}", {"input": reason.column, "text": reason.sentence})
+    return reason.named(COLUMNS[reason.column].name if reason.column in COLUMNS else reason.column)
+
 
 FILTERS: dict[str, Callable[..., Any]] = {
     "as_attribute": _as_attribute,
     "as_read": _as_read,
     "as_typed": _as_typed,
-    "column": lambda place: current().text(_COLUMNS[place]) if place in _COLUMNS else place,
+    "named_reason": _named_reason,
     "capital": lambda text: text[:1].upper() + text[1:],
     "figure": _figure,
     "followed": _followed,
@@ -286,13 +300,23 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "where": _of_line("where"),
     **{
         name: _for_reader(name)
-        for name in ("exact", "fixed", "percent", "capped_percent", "unit", "told", "quantity", "source", "translated")
+        for name in (
+            "exact",
+            "fixed",
+            "percent",
+            "capped_percent",
+            "unit",
+            "sentence",
+            "quantity",
+            "source",
+            "translated",
+        )
     },
 }
-"""`{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | told }}`: for whoever reads the page."""
+"""Filters for the reader of the page: `{{ 40 | figure("Nm") }}`, `{{ "Nm" | unit }}`, `{{ sentence | sentence }}`."""
 
 NOT_USED = {"FR": "radial_load_not_used", "FA": "axial_load_not_used"}
-"""Inputs that may count for nothing beside others, and the notice that says so at their fields."""
+"""Inputs that others can make ineffective, and the notice on that at their fields."""
 
 GLOBALS: dict[str, Any] = {
     "ALIKE": ALIKE,
@@ -319,6 +343,7 @@ GLOBALS: dict[str, Any] = {
     "motor_pattern": MOTOR_CODE,
     "carried_pairs": carried_pairs,
     "NOT_USED": NOT_USED,
+    "MISSING": MISSING,
     "note_groups": note_groups,
     "onward": onward,
     "ordering_code": ordering_code,

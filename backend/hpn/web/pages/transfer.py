@@ -1,4 +1,4 @@
-"""The application as files: JSON as the API takes it, and the duty cycle as CSV for a spreadsheet."""
+"""Files of the application: JSON for the API, and the duty cycle as CSV for a spreadsheet."""
 
 import csv
 import io
@@ -18,7 +18,7 @@ from hpn.web.form.linked import linked, query_of
 
 
 async def application_file(request: Request) -> Response:
-    """The application of a link as JSON: the body of `POST /api/v1/select`."""
+    """Application of a link as JSON: the body of `POST /api/v1/select`."""
     return await compute(request, "pages", _json_of, await query_of(request, "decimal"))
 
 
@@ -28,7 +28,7 @@ def _json_of(query: str) -> Response:
 
 
 async def cycle_file(request: Request) -> Response:
-    """The duty cycle of a link as CSV; `decimal=,` writes it as spreadsheets in German expect it."""
+    """Duty cycle of a link as CSV; `decimal=,` writes it for German spreadsheets."""
     return await compute(request, "pages", _csv_of, await query_of(request, "decimal"))
 
 
@@ -38,9 +38,9 @@ def _csv_of(query: str) -> Response:
 
 
 def write_table(cycle: DutyCycle, decimal: Decimal = ".") -> str:
-    """Phases as CSV that the page and a spreadsheet of that language read back exactly; also those of a motion.
+    """Phases, also those of a motion, as CSV that the page and a spreadsheet of that language read back exactly.
 
-    A name that would be a formula there has an apostrophe before it.
+    A name that a spreadsheet would read as a formula gets an apostrophe before it.
     """
     fields = [symbol.path[0] for symbol in columns_used(cycle.load_phases)]
     content = io.StringIO()

@@ -1,4 +1,4 @@
-"""The catalogues that selections were saved under. Those saved before have none, and stay as they are."""
+"""Catalogues of saved selections. Selections saved before have none, and stay as they are."""
 
 import sqlalchemy as sa
 from alembic import op

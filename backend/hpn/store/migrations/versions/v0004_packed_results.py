@@ -1,4 +1,4 @@
-"""Results are no longer packed by brotli alone: those that are stay as they are, and new ones are zstd frames."""
+"""Results are no longer packed by brotli alone: old ones stay as they are, and new ones are zstd frames."""
 
 from alembic import op
 

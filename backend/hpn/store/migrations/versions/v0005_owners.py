@@ -1,4 +1,4 @@
-"""The API key that saved a selection. Those saved before have none."""
+"""API key that saved a selection. Selections saved before have none."""
 
 import sqlalchemy as sa
 from alembic import op

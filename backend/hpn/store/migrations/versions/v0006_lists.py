@@ -1,6 +1,6 @@
-"""Columns for what a list shows and finds: labels, the gear that a page shows first, and the text of a search.
+"""Columns of a list: labels, the gear that a page shows first, and the text for searches.
 
-Replies saved before are read once for it, as far as they can be. Nothing here imports what later versions change.
+Replies saved before are read once to fill them, where they are readable. Imports no module that later versions change.
 """
 
 from collections.abc import Iterator
@@ -78,7 +78,7 @@ def _filled(row: Any) -> dict[str, Any]:
 
 
 def _first(packed: bytes) -> _Candidate | None:
-    """The selected gear, else the nearest miss among those that could be judged, if any could."""
+    """Selected gear, else the nearest miss that could be judged, else the first; None for an unreadable reply."""
     try:
         frame = packed.startswith(zstandard.FRAME_HEADER)
         candidates = msgspec.json.decode(

@@ -1,4 +1,4 @@
-"""Every change of what is saved counts a version, and a calculated fleet knows who has calculated it."""
+"""Versions that count every change of a saved selection or fleet, and the caller that calculated a fleet."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,9 +8,9 @@ down_revision = "0007"
 
 
 def upgrade() -> None:
-    """Add the columns; what is there already is in its first version, and of no caller.
+    """Add the columns; existing rows are in their first version, and without a caller.
 
-    In SQLite a fleet's stand before its tables: what stands behind them is read through all their pages.
+    In SQLite a fleet's columns stand before its tables: to reach a column behind them, SQLite reads all their pages.
     """
     op.add_column("selections", _version())
     caller = sa.Column("caller", sa.Text(), nullable=False, server_default="")

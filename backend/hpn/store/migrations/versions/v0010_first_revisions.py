@@ -1,6 +1,6 @@
-"""Selections and fleets become documents with axes and revisions; what was saved is the first revision of each.
+"""Selections and fleets become documents with axes and revisions; a saved one becomes its own first revision.
 
-Nothing is calculated anew. Nothing here imports what later versions change.
+Nothing is calculated anew. Imports no module that later versions change.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ MOMENT, WHOLE = sa.DateTime(timezone=True), sa.Integer()
 
 
 def upgrade() -> None:
-    """Move everything, and remove the tables of before."""
+    """Move all rows, and drop the old tables."""
     connection = op.get_bind()
     for rows in _batches(connection, _selections):
         _insert(connection, [_of_selection(row) for row in rows])
@@ -119,7 +119,7 @@ LABEL, SAVED = re.compile(r"[A-Za-z0-9._-]{1,20}"), "saved"
 
 
 def _first_revision(row: Any, moment: datetime, axes: list[Json], result: bytes | None = None) -> Json:
-    """First revision of a saved selection, under its own label where that can be a label."""
+    """First revision of a saved document, under its own `revision` text where that is a valid label."""
     text = row.revision or ""
     fits = LABEL.fullmatch(text) and text.strip(".") and text.casefold() not in ("now", "today", SAVED)
     label = text if fits else SAVED
@@ -226,7 +226,7 @@ class _Duty(msgspec.Struct):
 
 
 class _Said(msgspec.Struct):
-    """The fields that an answer has, by their names."""
+    """Fields of an answer's candidates, by their names."""
 
     candidates: tuple[dict[str, msgspec.Raw], ...]
 
@@ -244,14 +244,14 @@ UNREADABLE = {"pointer": "", "code": "unreadable", "detail": "what was saved her
 def _of_selection(row: Any) -> tuple[Json, list[Json], Json]:
     reply = _reply(row.result_packed)
     pairs = zip(reply.candidates, reply.said, strict=True) if reply else ()
-    shown = next(((one, said) for one, said in pairs if one.designation == row.designation), None)
-    if reply is None or shown is None:
+    pair = next(((one, said) for one, said in pairs if one.designation == row.designation), None)
+    if reply is None or pair is None:
         answer: Json = {"status": "open", "faults": msgspec.json.encode([UNREADABLE]).decode()}
     else:
         suitable = [one.designation for one in reply.candidates if one.status == "suitable"]
         answer = {
-            **msgspec.structs.asdict(shown[0]),
-            "unknown": _lacking(shown[1]),
+            **msgspec.structs.asdict(pair[0]),
+            "unknown": _lacking(pair[1]),
             "selected": reply.selected,
             "suitable": len(suitable),
             "runner_up": (*suitable, None, None)[1],
@@ -268,8 +268,8 @@ def _reply(packed: bytes) -> _Reply | None:
     try:
         frame = packed.startswith(zstandard.FRAME_HEADER)
         content = zstandard.decompress(packed) if frame else brotli.decompress(packed)
-        said = msgspec.json.decode(content, type=_Said).candidates
-        return msgspec.structs.replace(msgspec.json.decode(content, type=_Reply), said=said)
+        candidates = msgspec.json.decode(content, type=_Said).candidates
+        return msgspec.structs.replace(msgspec.json.decode(content, type=_Reply), said=candidates)
     except (msgspec.MsgspecError, zstandard.ZstdError, brotli.error, UnicodeDecodeError):
         return None
 
@@ -277,9 +277,9 @@ def _reply(packed: bytes) -> _Reply | None:
 FIGURES = ("life_L10_h", "shortest_life_h", "natural_frequency_Hz", "motor_torque_limit_Nm")
 
 
-def _lacking(said: Mapping[str, Any]) -> str:
-    """Figures of an answer that its version did not know; the mass stood in the catalogue alone."""
-    return msgspec.json.encode([*(name for name in FIGURES if name not in said), "weight_kg"]).decode()
+def _lacking(raw: Mapping[str, Any]) -> str:
+    """Names of figures that an answer's version did not know, as JSON; the mass stood only in the catalogue."""
+    return msgspec.json.encode([*(name for name in FIGURES if name not in raw), "weight_kg"]).decode()
 
 
 def _phases_in(application: str) -> int:
@@ -295,26 +295,26 @@ def _phases_in(application: str) -> int:
 
 def _of_fleet(row: Any) -> tuple[Json, list[Json], Json | None]:
     moment = row.saved or row.created
-    asked, answers = _cells(row.asked), _cells(row.answers)
-    if asked is None or answers is None:
+    questions, answers = _cells(row.asked), _cells(row.answers)
+    if questions is None or answers is None:
         unreadable = msgspec.json.encode([UNREADABLE]).decode()
         axes = [_axis(row, 1, moment, "{}", 0, status="open", faults=unreadable)]
     else:
-        named = {cells.pop("axis"): cells for cells in asked}
+        named = {cells.pop("axis"): cells for cells in questions}
         axes = [
             _of_answer(row, number, moment, cells, named.get(cells.get("axis")))
             for number, cells in enumerate(answers, 1)
         ]
     used = [axis["utilisation"] for axis in axes if axis["status"] == "suitable" and axis["utilisation"] is not None]
-    found = "\n".join(filter(None, (row.title, row.reference, row.author))).casefold()
-    parts = {"caller": row.caller, "search_text": found, "utilisation": max(used, default=None)}
+    words = "\n".join(filter(None, (row.title, row.reference, row.author))).casefold()
+    parts = {"caller": row.caller, "search_text": words, "utilisation": max(used, default=None)}
     document = _document(row, "machine", row.saved, axes, **parts)
     return document, axes, None if row.saved is None else _first_revision(row, row.saved, axes)
 
 
 def _cells(parquet: bytes) -> list[Json] | None:
-    """Rows of a table; None for one that can't be read."""
-    import pyarrow as pa  # of an extra that has made these tables
+    """Rows of a table; None for an unreadable one."""
+    import pyarrow as pa  # of the extra that wrote these tables
     import pyarrow.parquet as pq
 
     try:
@@ -324,8 +324,8 @@ def _cells(parquet: bytes) -> list[Json] | None:
     return rows
 
 
-def _of_answer(row: Any, number: int, moment: datetime, cells: Json, asked: Json | None) -> Json:
-    application = _application_of(asked or {})
+def _of_answer(row: Any, number: int, moment: datetime, cells: Json, question: Json | None) -> Json:
+    application = _application_of(question or {})
     parts: Json = {"name": cells.get("axis") or None}
     if faults := _faults_of(cells):
         parts |= {"status": "open", "faults": msgspec.json.encode(faults).decode()}
@@ -345,23 +345,23 @@ def _faults_of(cells: Mapping[str, Any]) -> list[Json]:
     ]
 
 
-def _text(said: Any) -> str:
+def _text(content: Any) -> str:
     """English text of a sentence with its values."""
-    if not isinstance(said, dict):
-        return str(said)
-    if "template" not in said:
-        return str(said.get("value"))
-    return str(said["template"]).format(**{name: _text(value) for name, value in said.get("values", {}).items()})
+    if not isinstance(content, dict):
+        return str(content)
+    if "template" not in content:
+        return str(content.get("value"))
+    return str(content["template"]).format(**{name: _text(value) for name, value in content.get("values", {}).items()})
 
 
 def _answer_of(cells: Mapping[str, Any]) -> Json:
-    """Answer of an axis with a gear, or with the nearest miss where none suits."""
+    """Answer of an axis: its gear, or the nearest miss where none suits."""
     same = {name: cells.get(name) for name in ("suitable", "runner_up", "average_torque_Nm", "life_L10_h")}
     same |= {name: cells.get(name) for name in ("shortest_life_h", "shortest_life_of", "motor_torque_limit_Nm")}
     same["unknown"] = _lacking(cells)
     if cells.get("selected") is not None:
-        found = {name: cells[name] for name in ("selected", "governing_check", "utilisation")}
-        return {**same, **found, "status": "suitable", "designation": cells["selected"]}
+        verdict = {name: cells[name] for name in ("selected", "governing_check", "utilisation")}
+        return {**same, **verdict, "status": "suitable", "designation": cells["selected"]}
     used = cells.get("nearest_utilisation")
     return {
         **same,
@@ -373,7 +373,7 @@ def _answer_of(cells: Mapping[str, Any]) -> Json:
 
 
 def _application_of(cells: Mapping[str, Any]) -> Json:
-    """Application that a row in list form stands for."""
+    """Application of a row in list form."""
     lists = {name: values for name, values in cells.items() if isinstance(values, list) and "." not in name}
     count = max(map(len, lists.values()), default=0)
     if not count:

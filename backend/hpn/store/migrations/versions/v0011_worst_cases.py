@@ -1,4 +1,4 @@
-"""Axes have the worst case over their tolerances; answers of before know none."""
+"""Worst case of axes over their tolerances; answers of earlier versions have none."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Documents and axes say which of them get another verdict today; made in the background."""
+"""Today's verdicts of documents and axes, asked in the background."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,7 +8,7 @@ down_revision = "0011"
 
 
 def upgrade() -> None:
-    """Add the columns, null for every document: all of them are asked once."""
+    """Add the columns, null for every document: each is asked once."""
     for name in ("today_of", "today_selected", "today_status", "today_axes"):
         op.add_column("documents", sa.Column(name, sa.Text()))
     op.add_column("documents", sa.Column("today_changed", sa.Integer()))

@@ -1,4 +1,4 @@
-"""The pairs of a query, sorted by what they belong to: rows of phases, moves and bodies, single values, lists, page."""
+"""Pairs of a query, sorted into rows of phases, moves and bodies, single values, lists and parameters of the page."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -6,14 +6,25 @@ from dataclasses import dataclass
 
 from hpn.application import MOST_WISHES
 from hpn.application.motion import MAXIMUM_MOVES
+from hpn.application.motor import MOST_POINTS
 from hpn.application.shaft_centre import MOST_SIZES
 from hpn.application.tolerances import MOST_TOLERANCES
 from hpn.links.labels import LABELS
 from hpn.links.row_symbols import BODY_BY_NAME, MOVE_BY_LEAF, MOVE_BY_NAME, PHASE_BY_NAME, PHASE_SYMBOLS, TURN_SYMBOLS
 from hpn.links.rows import EVEN, OF_ANY_ROW, SHARED, TEXT, TOLERANCE, FormTable, cells_of, groups_of, shown_columns
-from hpn.links.symbols import BY_NAME, BY_SIZE, MECHANISM_SYMBOLS, SYMBOLS, mechanism_symbols, units_of
+from hpn.links.symbols import (
+    BY_NAME,
+    BY_SIZE,
+    CURVES,
+    MECHANISM_SYMBOLS,
+    MERGED,
+    SYMBOLS,
+    mechanism_symbols,
+    units_of,
+)
 from hpn.physics.motion.bodies import MOST_BODIES
 from hpn.tables.by_size import BySize, by_size
+from hpn.tables.curve_text import CurveText, curve_text
 from hpn.tables.inputs import NAME
 from hpn.tables.numbers import WAS, WRITTEN, Notation
 from hpn.web.form.tolerance_fields import EXACT, INPUT_OF, OF_COLUMN, OF_ROW, ROW, input_of, place, symbol_in, typed
@@ -26,17 +37,17 @@ Pairs = Sequence[tuple[str, str]]
 
 ASIDE = "aside"
 REST_FRICTION, REVERSES = "rf", "lr"
-"""Names of what phases have to say of their rest and of the sense of their torque, which a motion has by itself."""
+"""Inputs that phases need, for friction at rest and reversal of torque; a motion determines both."""
 
 CYCLE_NAMES = {symbol.name for symbol in (*PHASE_SYMBOLS, *TURN_SYMBOLS, *MECHANISM_SYMBOLS)}
-"""Names of a link that make its duty cycle, as phases or as a motion."""
+"""Names of a link's parameters for its duty cycle, as phases or as a motion."""
 
 OF_ONE_WAY = {*CYCLE_NAMES, REST_FRICTION, REVERSES}
-"""Names of what belongs to one way alone in which a cycle is given."""
+"""Names of parameters that belong to a single way to give a cycle."""
 
 
 def is_of_one_way(name: str, text: str) -> bool:
-    """True for an input that belongs to one way alone, and for its tolerance."""
+    """True for an input that belongs to a single way to give a cycle, and for its tolerance."""
     return (symbol_in(text) if name == TOLERANCE else input_of(name)) in OF_ONE_WAY
 
 
@@ -47,28 +58,28 @@ FIRST_TOLERANCE = "tol_tp"
 """Field of a tolerance that every form has."""
 
 CONDITION = ("at_n", "at_life", "at_fw")
-"""Speed, life and load coefficient of which a page says what a shaft may carry, where no load is given."""
+"""Speed, life and load coefficient for the permitted load of a shaft, which a page shows when no load is given."""
 
 PAGE_NAMES = ("gear", "pin", "unpin", "do", ASIDE, EXACT, WRITTEN, WAS, *CONDITION)
-"""Parameters of the page alone: the candidate looked at, those pinned beside it (repeated), one to take away, the
-buttons that edit the rows, one after the other, and what was typed another way (repeated)."""
+"""Parameters of the page itself: gear shown, pinned gears (repeated), one to unpin, pressed buttons in their order,
+inputs of other ways (repeated), switch of tolerances, language and units of the form, and condition."""
 
 REQUIRED = ("T", "n", "t")
 
 _UNSEEN = re.compile("[\u00ad\u200b-\u200d\u2060\ufeff]")
-"""Characters without width, which come with links copied from documents that break their lines with them."""
+"""Characters without width; documents break long links with them, and copied links contain them."""
 
 _RATIO = re.compile(r"([0-9]{1,4}) ?: ?1")
 
 
 def visible(text: str) -> str:
-    """A part of a link without characters that have no width."""
+    """Text of a link without characters that have no width."""
     return text if text.isascii() else _UNSEEN.sub("", text)
 
 
 @dataclass(frozen=True)
 class FieldProblem:
-    """Fault of one input: its message, the query name and, for a repeated one, the place among its values."""
+    """Fault of one input: its query name, its index among the values of a repeated input, and the message."""
 
     name: str
     index: int | None
@@ -76,35 +87,35 @@ class FieldProblem:
 
     @property
     def of_tolerance(self) -> bool:
-        """True for a field of a tolerance."""
+        """True if the input is a field of a tolerance."""
         return self.name in INPUT_OF
 
     @property
     def of_phase(self) -> bool:
-        """True for an input of a phase, and for its tolerance."""
+        """True if the input belongs to a phase, or is the tolerance of such an input."""
         return OF_ROW.get(self.name, self.name) in PHASE_BY_NAME
 
     @property
     def of_move(self) -> bool:
-        """True for an input of a move."""
+        """True if the input belongs to a move, or is the tolerance of such an input."""
         return OF_ROW.get(self.name, self.name) in MOVE_BY_NAME and not self.of_phase
 
     @property
     def of_row(self) -> bool:
-        """True for an input in a row of the duty table, of phases or of moves."""
+        """True if the input is in a row of the duty table, of phases or of moves."""
         return self.of_phase or self.of_move
 
     @property
     def place(self) -> str:
-        """Element of the page that takes this input."""
+        """Id of the input's element on the page."""
         is_one = self.of_row or self.name in BODY_BY_NAME or (self.name == TOLERANCE and self.index is not None)
         return f"{self.name}-{self.index or 0}" if is_one else f"f-{self.name}"
 
 
 class SortedQuery:
-    """A query sorted into rows of phases, moves and bodies, single values, lists and what belongs to the page.
+    """Query sorted into rows of phases, moves and bodies, single values, lists and parameters of the page.
 
-    Texts are in the wire's units and notation. The buttons among the pairs are played on it afterwards.
+    Texts are in the wire's units and notation. `buttons.play` applies the pressed buttons afterwards.
     """
 
     def __init__(self, pairs: Pairs) -> None:
@@ -129,7 +140,7 @@ class SortedQuery:
         self._place()
 
     def _begin(self, pairs: Pairs) -> None:
-        """Have empty tables; names and loads of rows belong to moves where anything of a motion is given."""
+        """Create empty tables; names and loads of rows belong to moves if any input of a motion is given."""
         self.units = units_of(next((text.strip() for name, text in pairs if visible(name) == "mech"), ""))
         self.has_motion = any(text.strip() and visible(name) in _OF_MOTION for name, text in pairs)
         self.phases = FormTable((n for n in PHASE_BY_NAME if not (self.has_motion and n in OF_ANY_ROW)), MAXIMUM_PHASES)
@@ -138,7 +149,7 @@ class SortedQuery:
     # --- Sorting ------------------------------------------------------------------------------------------------------
 
     def _write(self, name: str, text: str) -> None:
-        """Take one pair as it was typed; the form has a field for each size, as `xc.20A`."""
+        """Add one pair as typed; the form has a field for each size, such as `xc.20A`."""
         symbol, of_size, size = name.partition(".")
         if of_size and symbol in BY_SIZE:
             name, text = symbol, f"{size[:20]}: {text}" if text.strip() else ""
@@ -151,7 +162,7 @@ class SortedQuery:
 
     def in_wire_units(self, name: str, text: str) -> str:
         """Text of a field in the wire's units and notation."""
-        if name in _OF_PEOPLE:  # in whose texts characters without width join emoji and letters
+        if name in _OF_PEOPLE:  # in their texts characters without width join emoji and letters
             return text
         text = visible(text)
         if name == "i" and (match := _RATIO.fullmatch(text.strip())):
@@ -160,13 +171,15 @@ class SortedQuery:
             return typed(name, text, self.notation, self.units)
         if name in BY_SIZE:
             return BySize(part._replace(number=self._entry(name, part.number)) for part in by_size(text).parts)
+        if name in CURVES:
+            return curve_text(text).over(self.notation.entry)
         return self._entry(name, text)
 
     def _entry(self, name: str, text: str) -> str:
         return self.notation.entry(text, self.units[name]) if name in self.units else text
 
     def add(self, name: str, text: str) -> None:
-        """Take one pair."""
+        """Add one pair in the wire's notation."""
         if table := self.table_of(name):
             table.add(name, text)
         elif name == "do":
@@ -187,6 +200,8 @@ class SortedQuery:
             self.unknown.append((name, text))
         elif name in BY_SIZE:
             self._add_by_size(name, by_size(text))
+        elif name in CURVES:
+            self._add_points(name, curve_text(text))
         elif not BY_NAME[name].many:
             self._add_single(name, text)
         elif text.strip():
@@ -196,33 +211,41 @@ class SortedQuery:
 
     def _add_single(self, name: str, text: str) -> None:
         self.single.setdefault(name, []).append(text)
-        if text.strip():  # the plain form submits blank fields too: they count as absent
+        if text.strip():  # the plain form submits blank fields, too; they count as absent
             self.scalars.setdefault(name, text)
 
     def _add_by_size(self, name: str, text: BySize) -> None:
-        """Take numbers by size, which may be repeated; of those without a size there is one."""
+        """Add numbers by size, which may be repeated; only one may have no size."""
         self.single.setdefault(name, []).extend(part.number for part in text.parts if not part.size)
         before = self.scalars.get(name)
         parts = (*(by_size(before).parts if before else ()), *text.parts)
         if parts:
             self.scalars[name] = BySize(parts[: MOST_SIZES + 1])  # one more than there may be is enough to refuse them
 
+    def _add_points(self, name: str, text: CurveText) -> None:
+        """Add points of a curve, which may be repeated."""
+        self.single.setdefault(name, [])
+        before = self.scalars.get(name)
+        points = (*(curve_text(before).points if before else ()), *text.points)
+        if points:
+            self.scalars[name] = CurveText(points[: MOST_POINTS + 1])  # one more than there may be is enough
+
     def table_of(self, name: str) -> FormTable | None:
-        """Table that a name is a column of, if any."""
+        """Table with a column of this name, or None."""
         name = OF_ROW.get(name, name)
         if name in PHASE_BY_NAME and not (self.has_motion and name in OF_ANY_ROW):
             return self.phases
         return self.moves if name in MOVE_BY_NAME else self.bodies if name in BODY_BY_NAME else None
 
     def _show(self) -> None:
-        """Have the optional columns that are used."""
+        """Show the optional columns that are used."""
         self.shown = groups_of({**self.phases.counts, **self.moves.counts})
         if any(row[EVEN].strip() for row in self.moves.rows):
             self.shown.add(EVEN)
         self.show_columns()
 
     def show_columns(self) -> None:
-        """Have the columns of the groups that are shown."""
+        """Give the tables the columns of the shown groups."""
         apart = SHARED if self.has_motion else ()
         self.phases.show(self._with_tolerances(shown_columns(PHASE_BY_NAME, self.shown.difference(apart))))
         self.moves.show(self._with_tolerances(shown_columns(MOVE_BY_NAME, self.shown)))
@@ -232,7 +255,7 @@ class SortedQuery:
         return columns + own if self.has_tolerances else columns
 
     def _place(self) -> None:
-        """Have the tolerances of a link in their fields."""
+        """Move the tolerances of a link into their fields."""
         if self.tolerances and len(self.tolerances) <= MOST_TOLERANCES:
             inputs = {*self.duty.names, *(symbol.name for symbol in SYMBOLS)}
             if self.has_motion:
@@ -242,24 +265,24 @@ class SortedQuery:
 
     @property
     def has_tolerances(self) -> bool:
-        """True where inputs have a field for their tolerance."""
+        """True if inputs have fields for their tolerances."""
         entries = (*self.single, *self.phases.counts, *self.moves.counts)
         return any(name in INPUT_OF for name in entries)
 
     @property
     def is_exact(self) -> bool:
-        """True where tolerances don't count for the moment."""
+        """True if tolerances are switched off."""
         return bool(self.page.get(EXACT, "").strip())
 
-    # --- What buttons do ----------------------------------------------------------------------------------------------
+    # --- Actions of buttons -------------------------------------------------------------------------------------------
 
     def toggle(self, group: str) -> None:
-        """Show or leave out a group of optional columns."""
+        """Show or hide a group of optional columns."""
         self.shown ^= {group}
         self.show_columns()
 
     def toggle_tolerances(self) -> None:
-        """Show the fields of tolerances, or put them out of sight and count; blank ones go."""
+        """Show the fields of tolerances, or hide them: filled ones stop counting, blank ones are removed."""
         if self.is_exact or not self.has_tolerances:
             self.page.pop(EXACT, None)
             self.single.setdefault(FIRST_TOLERANCE, [""])
@@ -274,11 +297,11 @@ class SortedQuery:
         self.show_columns()
 
     def put(self, name: str, text: str) -> None:
-        """Have a text as the only one of a single value."""
+        """Set the text of a single value."""
         self.single[name], self.scalars[name] = [text], text
 
     def cycle(self) -> list[tuple[str, str]]:
-        """Pairs of the duty cycle and of what belongs to the way in which it is given."""
+        """Pairs of the duty cycle and of the other inputs of its way."""
         single = [(name, text) for name in self.single if input_of(name) in OF_ONE_WAY for text in self.single[name]]
         single += [(TOLERANCE, text) for text in self.tolerances if is_of_one_way(TOLERANCE, text)]
         tables = (self.phases, self.moves)
@@ -287,7 +310,7 @@ class SortedQuery:
         ]
 
     def put_cycle(self, pairs: Pairs) -> None:
-        """Have another duty cycle, with what belongs to the way in which it is given."""
+        """Replace the duty cycle and the other inputs of its way."""
         for name in [name for name in self.single if input_of(name) in OF_ONE_WAY]:
             self.single.pop(name, None)
             self.scalars.pop(name, None)
@@ -299,7 +322,7 @@ class SortedQuery:
         self._show()
 
     def keep_cycle(self) -> None:
-        """Leave out all but duty cycle, labels and buttons."""
+        """Remove everything except duty cycle, labels and buttons."""
         for beside in (self.lists, self.page, self.pins, self.unknown, self.asides):
             beside.clear()
         for name in list(self.single):
@@ -308,20 +331,20 @@ class SortedQuery:
                 self.scalars.pop(name, None)
         self.tolerances = [text for text in self.tolerances if is_of_one_way(TOLERANCE, text)]
 
-    # --- What is given ------------------------------------------------------------------------------------------------
+    # --- Content ------------------------------------------------------------------------------------------------------
 
     @property
     def duty(self) -> FormTable:
-        """The table that makes the duty cycle."""
+        """Table of the duty cycle: moves of a motion, else phases."""
         return self.moves if self.has_motion else self.phases
 
     def pinned(self) -> tuple[str, ...]:
-        """Pinned gears, without the one whose button takes it away."""
+        """Pinned gears, without the one to unpin."""
         return tuple(pin for pin in self.pins if pin != self.page.get("unpin"))
 
     def beside(self) -> list[tuple[str, str]]:
-        """Pairs of all that is given but rows and buttons; blank ones are left out."""
-        texts = {**self.single, **self.lists, **self.labels, **{name: [self.scalars.get(name, "")] for name in BY_SIZE}}
+        """Pairs of everything but rows and buttons; blank ones are left out."""
+        texts = {**self.single, **self.lists, **self.labels, **{name: [self.scalars.get(name, "")] for name in MERGED}}
         named = [(name, text) for name in texts for text in texts[name]]
         page = [*self.page.items(), *(("pin", pin) for pin in self.pins), *((ASIDE, aside) for aside in self.asides)]
         page += [(TOLERANCE, text) for text in self.tolerances]
@@ -329,7 +352,7 @@ class SortedQuery:
         return [(name, text) for name, text in pairs if text.strip() and name not in (WRITTEN, WAS, *CONDITION)]
 
     def problems(self) -> Iterable[FieldProblem]:
-        """Names that are unknown, repeated, or repeated unequally often."""
+        """Yield problems of names that are unknown, wrongly repeated, or repeated less often than their table needs."""
         for name, _ in self.unknown[:20]:
             yield FieldProblem(name[:60], None, unknown_name(name))
         for name, texts in (*self.single.items(), *self.labels.items()):
@@ -358,7 +381,7 @@ def _unequal(table: FormTable, required: Sequence[str]) -> Iterable[FieldProblem
 
 
 def _beside_motion(phases: FormTable) -> Iterable[FieldProblem]:
-    """Phases where a motion is given: blank ones, as a form submits them, count as absent."""
+    """Yield a problem for phases given beside a motion; blank ones, as a form submits them, count as absent."""
     for name in phases.counts:
         if filled := [k for k, row in enumerate(phases.rows) if row.get(name, "").strip()]:
             yield FieldProblem(name, filled[0], Sentence(N_("given beside a motion: give either phases or a motion")))
