@@ -81,7 +81,7 @@ def held_port() -> Iterator[int]:
     """A port that the system gives to nobody else until the block ends: a program that asks for it can listen there."""
     with socket.socket() as held:
         held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as servers do, and only then beside each other
-        held.bind(("127.0.0.1", 0))
+        held.bind(("", 0))  # free on every address, for a service that listens on all of them
         yield held.getsockname()[1]
 
 
