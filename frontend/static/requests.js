@@ -64,6 +64,7 @@ document.addEventListener("htmx:after:swap", (event) => {
   else {
     showAddress(ctx);
     mark();
+    if (formOf().matches("[data-waiting]")) awaited(document.activeElement); // an earlier request's result does not name the input
   }
   showSteps();
   unfold();

@@ -2,12 +2,13 @@
 
 import json
 import re
+from functools import partial
 from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.conftest import Visitor, violations
+from tests.browser.conftest import Visitor, answer_held_back, violations
 
 SAVED = re.compile("/selections/[A-Za-z0-9_-]{22}$")
 ON_DESK = pytest.mark.parametrize("width", [1440, pytest.param(390, marks=pytest.mark.soak)])
@@ -190,6 +191,17 @@ def test_a_complete_move_is_answered_at_once_and_the_missing_cell_is_named_where
     expect(page).to_have_url(re.compile("mn=400&mta=0.2"))  # neither its time nor its acceleration is given
     expect(awaited).to_have_count(0)
     expect(page.locator("[data-awaited]")).to_have_count(0)
+
+
+def test_the_result_of_an_earlier_request_names_the_cell_that_is_still_to_enter(visitor: Visitor) -> None:
+    page = visitor.open("/?mech=ball_screw&h=20&ml=180&mv=trapezoidal&ms=600&mt=2&mv=trapezoidal&ms=-600&mt=2")
+    awaited = page.get_by_text("Still to enter:").filter(visible=True)
+    with answer_held_back(page, partial(box(page, "Time, move 1").fill, "1.5")):
+        box(page, "Time, move 2").fill("")
+        expect(awaited.last).to_contain_text("Time, move 2, in s")
+    expect(page).to_have_url(re.compile("mt=1.5"))
+    expect(awaited).to_have_count(2)
+    expect(awaited.last).to_contain_text("Time, move 2, in s")
 
 
 @pytest.mark.parametrize(("width", "panel"), [(1440, 700), (1920, 760), (1300, 580), (1024, 1024)])
