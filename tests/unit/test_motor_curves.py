@@ -384,7 +384,6 @@ def check_by_samples(given_: Json, seed: int) -> None:
             assert table.peak[row, column] == pytest.approx(nearest, rel=0.1, abs=1e-9)
 
 
-@settings(max_examples=200)
 @given(motions(), st.integers(0, 2**32))
 def test_thermal_load_and_peak_along_a_curve_are_those_of_the_motions_instants(given_: Json, seed: int) -> None:
     check_by_samples(given_, seed)
