@@ -5,6 +5,7 @@ import random
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from functools import cache
 from io import BytesIO
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from hpn.files.export import DIGITS
 from hpn.files.formats import FileFormat
 from hpn.files.report.pdf import pdf
 from hpn.files.workbook.workbook import workbook
+from hpn.verify.paper import Format
 from hpn.verify.shown import FileSubject, UnreadableFileError
 from hpn.verify.verify import verify
 from hpn.words.reader import Reader
@@ -58,9 +60,10 @@ def test_a_file_of_this_version_is_the_same_in_any_language_and_unit(
 def test_one_altered_digit_anywhere_on_a_report_is_named(
     case: str, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Digits are altered by pikepdf, in the content of the page; the report to compare with is made once."""
+    """Digits are altered by pikepdf, in the content of the page; the report to compare with is made and read once."""
     report = pdf(typed_export_of(CASES[case], catalogue), ENGLISH)
     monkeypatch.setattr(FileFormat, "made", lambda *_: report)
+    monkeypatch.setattr(Format, "lines", cache(Format.lines))
     count = count_of_digits(report)
     assert count > 500
     for number in random.Random(53).sample(range(count), 12):
@@ -198,8 +201,11 @@ def test_an_altered_figure_of_an_earlier_version_is_named(catalogue: Catalogue) 
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_a_digit_altered_on_a_report_of_an_earlier_version_is_named(version: str, catalogue: Catalogue) -> None:
+def test_a_digit_altered_on_a_report_of_an_earlier_version_is_named(
+    version: str, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """As differing, or among what can't be checked with its line; numbers of tables and pages may escape."""
+    monkeypatch.setattr(Format, "lines", cache(Format.lines))  # reads the reports of today once
     report = file_of(version, "report.pdf")
     plain, named = verify(report, catalogue), 0
     for number in random.Random(7).sample(range(count_of_digits(report)), 6):
