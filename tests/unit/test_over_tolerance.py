@@ -271,7 +271,7 @@ ASKED: Json = {
         "position_radius_mm": 300.0,
         "ambient_temperature_degC": 25.0,
     }
-    | {"backlash_arcmin": 6.0, "torsional_stiffness_Nm_per_rad": 9000.0, "weight_kg": 4.0, "length_mm": 150.0}
+    | {"backlash_arcmin": 6.0, "torsional_stiffness_Nm_per_rad": 9000.0, "weight_kg": 1.0, "length_mm": 150.0}
     | {
         "motor": {
             "maximum_speed_rpm": 4000.0,
@@ -323,7 +323,7 @@ def moved_to(document: Json, place: tuple[str | int, ...], value: float) -> Json
     [turning({"brake": BRAKE}, **ROTOR), turning({"torque_Nm": 200.0, "count": 100}), typed({"brake": BRAKE}, **ROTOR)],
 )
 def test_a_tolerance_of_any_single_input_counts_in_every_check(document: Json, catalogue: Catalogue) -> None:
-    """At both ends of each input no check is worse than its worst case."""
+    """At both ends of each input no check is worse than its worst case. All gears are too heavy: none has a reserve."""
     counted = 0
     for place, value in numbers_of(document):
         path = ".".join(map(str, place)).removeprefix("duty_cycle.")
