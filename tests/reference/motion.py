@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 from mpmath import mp, mpf
@@ -246,10 +246,11 @@ def _of_move(mechanism: Json, index: int, move: Json, theta: Any) -> list[Stretc
         one = Way([0, T], [T], lambda t: mpf(0), lambda t: mpf(0), lambda t: mpf(0))
     else:
         one = course(move, way, 6 if rotary else 1)
-    load = _load(mechanism, move, rho, rotary)
+    load, own_speed = _load(mechanism, move, rho, rotary), cache(one.speed)
 
+    @cache  # two integrals meet at the same instants
     def shaft(t: Any) -> Any:
-        at = (theta + way * one.place(t), way * one.speed(t) / rho, way * one.acceleration(t) / rho)
+        at = (theta + way * one.place(t), way * own_speed(t) / rho, way * one.acceleration(t) / rho)
         return load(*at, sign)
 
     def at_gear(t: Any) -> Any:
@@ -265,7 +266,7 @@ def _of_move(mechanism: Json, index: int, move: Json, theta: Any) -> list[Stretc
         for low, high in itertools.pairwise(edges):
             if high > low:
                 speed, acceleration = (
-                    _scaled(one.speed, way / rho * ratio),
+                    _scaled(own_speed, way / rho * ratio),
                     _scaled(one.acceleration, way / rho * ratio),
                 )
                 found.append(Stretch(index, low, high, one.kinks, at_gear, speed, acceleration))
