@@ -112,7 +112,7 @@ def test_figures_as_typed_are_decided_as_in_exact_arithmetic_whatever_the_last_b
 ) -> None:
     with mpmath.workdps(DIGITS):
         gears = exact_gears()
-    count = 20_000 if soak else 600
+    count = 20_000 if soak else 200
     step = 200
     for first in range(0, count, step):
         cases = [typed(random.Random(seed)) for seed in range(first, first + step)]
