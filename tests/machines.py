@@ -23,7 +23,7 @@ COMMON: Json = {
 
 def frozen(axes: Sequence[Json], catalogue: Catalogue, common: Json | None = None, **block: str) -> Frozen:
     """A document as it is frozen, its axes numbered as they stand unless they have a `number`."""
-    sent = Common.model_validate(common or {}).sent
+    sent = Common.model_validate(common or {}).as_json
     own = [Axis.model_validate({name: value for name, value in axis.items() if name != "number"}) for axis in axes]
     resolved = [resolve(axis.application, sent, axis.without) for axis in own]
     asked = [AxisQuestion(each, axis.ordering_code) for each, axis in zip(resolved, own, strict=True)]

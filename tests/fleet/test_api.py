@@ -355,7 +355,7 @@ def test_leftovers_of_a_killed_service_are_removed_at_the_next_start_and_nothing
     for name in ("left", "held"):
         (spool / f"{fleets.PREFIX}{name}" / "input.csv").touch()
     (spool / "other").mkdir()
-    with fleets.locked(spool / f"{fleets.PREFIX}held"):
+    with fleets.folder_lock(spool / f"{fleets.PREFIX}held"):
         bounded()
 
     assert {path.name.removeprefix(fleets.PREFIX) for path in spool.iterdir()} == {"held", "new", "other"}

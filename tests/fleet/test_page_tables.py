@@ -17,7 +17,7 @@ from hpn.application import Application
 from hpn.links.writer import to_link
 from hpn.tables.files import NO_TEXT
 from hpn.tables.reading import Reading, reading_of
-from hpn.web.axis_tables import WANTED
+from hpn.web.axis_tables import BOUNDS
 from hpn.words.wording import Sentence
 from tests.fleet.page import GERMAN, HEAVY, HUB, fields_of, post
 from tests.fleet.tables import REQUIRED, in_long_form, row_of, table_of, write
@@ -31,7 +31,7 @@ def test_tables_of_hpn_fleet_are_taken_as_they_are(tmp_path: Path, suffix: str, 
     phases = [{name: row[name] for name in ("axis", *REQUIRED)} for row in rows]
     file = write(tmp_path / f"axes{suffix}", rows if form == "list" else in_long_form(phases))
 
-    assert reading_of(file.read_bytes(), WANTED) == Reading(suffix=suffix)
+    assert reading_of(file.read_bytes(), BOUNDS) == Reading(suffix=suffix)
 
 
 def as_written_elsewhere(kind: str, folder: Path) -> bytes:
@@ -73,7 +73,7 @@ def test_gzip_and_streams_with_other_headings_are_read(kind: str, tmp_path: Path
     else:
         sink.write(gzip.compress(f"{','.join(row)}\n{','.join(map(str, row.values()))}\n".encode()))
 
-    table = reading_of(sink.getvalue(), WANTED).table
+    table = reading_of(sink.getvalue(), BOUNDS).table
 
     assert table is not None
     assert table.axes == ({"axis": "A", "torque_Nm": [12.5], "speed_rpm": [1234.567], "duration_s": [1e-3]},)
@@ -88,7 +88,7 @@ def test_gzip_and_streams_with_other_headings_are_read(kind: str, tmp_path: Path
     ids=["gzip in gzip", "no gzip"],
 )
 def test_gzip_without_a_table_is_said(content: bytes) -> None:
-    table = reading_of(content, WANTED).table
+    table = reading_of(content, BOUNDS).table
     assert table is not None and table.problem == Sentence(NO_TEXT)
 
 
@@ -117,7 +117,7 @@ def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Pa
     row = {"Antrieb": "A", "Moment Nm": exact, "Drehzahl rpm": 1234.567, "Zeitdauer s": 1e-3}
     pq.write_table(pa.Table.from_pylist([row]), tmp_path / "axes.parquet")
 
-    table = reading_of((tmp_path / "axes.parquet").read_bytes(), WANTED).table
+    table = reading_of((tmp_path / "axes.parquet").read_bytes(), BOUNDS).table
 
     assert table is not None
     assert table.axes == ({"axis": "A", "torque_Nm": [exact], "speed_rpm": [1234.567], "duration_s": [1e-3]},)

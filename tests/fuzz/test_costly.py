@@ -18,10 +18,10 @@ from hpn.tables.reading import Reading, reading_of
 from hpn.tables.sheets import MAXIMUM_CHARACTERS
 from hpn.tables.table import Table
 from hpn.tables.workbooks import LONGEST_NAME, sheets_of
-from hpn.web.axis_tables import WANTED as AXES
+from hpn.web.axis_tables import BOUNDS as AXES
 from hpn.web.door.beside import EndedError, ProcessBeside
 from hpn.web.door.pools import FILE_BOUNDS
-from hpn.web.pages.paste import WANTED as PHASES
+from hpn.web.pages.paste import BOUNDS as PHASES
 from hpn.words.wording import Sentence
 from tests.fuzz import cells as of_cells
 from tests.fuzz.costly import OBJECTS, PACKED, TABLES, TEXTS, WORKBOOKS, made

@@ -29,8 +29,8 @@ from hpn.tables.numbers import Notation, read_value, to_fields
 from hpn.tables.reading import reading_of
 from hpn.tables.sheets import LONGEST_TEXT, Grid, grid_of
 from hpn.tables.table import Table
-from hpn.web.axis_tables import WANTED as AXES
-from hpn.web.pages.paste import WANTED as PHASES
+from hpn.web.axis_tables import BOUNDS as AXES
+from hpn.web.pages.paste import BOUNDS as PHASES
 from hpn.words.patterns import Pattern
 from hpn.words.reader import Reader
 from tests.fuzz.formats import workbook

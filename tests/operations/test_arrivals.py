@@ -47,7 +47,7 @@ def test_arriving_bytes_are_bounded_for_all_together_and_given_back(make_client:
     assert "999990 of 1000000 bytes" in refused.json()["detail"]
     assert (too_much.status_code, "1000000 bytes" in too_much.text) == (413, True)
     assert client.post(PATH, content=AXES, headers=CSV).status_code == 200
-    assert disk.taken == 0
+    assert disk.in_use == 0
 
 
 def test_shares_of_the_disk_add_up() -> None:
@@ -59,4 +59,4 @@ def test_shares_of_the_disk_add_up() -> None:
         other.take(40)
 
     assert refused.value.status_code == 503
-    assert disk.taken == 0
+    assert disk.in_use == 0

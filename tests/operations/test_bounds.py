@@ -22,7 +22,7 @@ from hpn.tables.reading import Reading, reading_of
 from hpn.web.door.beside import Bounds, CallResult
 from hpn.web.door.pools import TOO_LARGE, Places, Pool
 from hpn.web.door.problems import Problem
-from hpn.web.pages.paste import WANTED
+from hpn.web.pages.paste import BOUNDS
 from tests.operations.service import is_gone
 
 SMALL = Bounds(400_000_000, 0.5)
@@ -103,7 +103,7 @@ async def test_nothing_of_a_strangers_file_gets_into_the_log_and_a_text_comes_ba
 
 def read_table() -> Reading:
     """A reading with everything in it that one may have."""
-    return reading_of("T [Nm];n;t\n1.234;100;1\nSumme;;\n2.5;200;1", WANTED)
+    return reading_of("T [Nm];n;t\n1.234;100;1\nSumme;;\n2.5;200;1", BOUNDS)
 
 
 @pytest.mark.anyio

@@ -181,7 +181,7 @@ def test_a_body_beyond_its_share_of_the_disk_is_refused_and_all_is_given_back(ma
     answers = [client.post(PATH, content=content, headers=NDJSON) for content in (BODY, BODY + b" ", BODY)]
 
     assert [answer.status_code for answer in answers] == [200, 413, 200]
-    assert state_of(client).disk.taken == 0
+    assert state_of(client).disk.in_use == 0
 
 
 def test_where_the_disk_is_full_lines_are_a_503(make_client: MakeClient, tmp_path: Path) -> None:
@@ -224,7 +224,7 @@ async def test_a_client_that_never_reads_is_cut_off(make_client: MakeClient) -> 
     await asyncio.wait_for(peer.ask(client), 20)
 
     assert peer.sent[-1]["more_body"]  # so that the server ends the connection
-    assert state_of(client).disk.taken == state_of(client).pools["batches"].taken == 0
+    assert state_of(client).disk.in_use == state_of(client).pools["batches"].in_use == 0
 
 
 @pytest.mark.anyio
@@ -237,7 +237,7 @@ async def test_work_ends_when_the_client_leaves(make_client: MakeClient, monkeyp
     await asyncio.wait_for(asked, 20)
 
     assert peer.sent[-1]["more_body"]
-    assert state_of(client).disk.taken == state_of(client).pools["batches"].taken == 0
+    assert state_of(client).disk.in_use == state_of(client).pools["batches"].in_use == 0
 
 
 @pytest.mark.anyio
@@ -252,4 +252,4 @@ async def test_a_mistake_of_ours_leaves_the_answer_without_its_end(
     await peer.ask(client)
 
     assert [message["type"] for message in peer.sent] == ["http.response.start"]
-    assert state_of(client).disk.taken == 0
+    assert state_of(client).disk.in_use == 0

@@ -19,7 +19,7 @@ from starlette.requests import Request
 
 from hpn.web.app import create_app
 from hpn.web.door.beside import CallResult
-from hpn.web.door.observation import GONE
+from hpn.web.door.observation import CLIENT_CLOSED
 from hpn.web.door.pools import Places, Pool, while_present
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
@@ -39,7 +39,7 @@ def test_all_places_are_taken_and_the_next_is_refused_until_one_is_given_back() 
 
     assert refused.value.status_code == 503
     assert int((refused.value.headers or {})["Retry-After"]) > 0
-    assert pool.taken == 0
+    assert pool.in_use == 0
 
 
 def request_of(*messages: str) -> Request:
@@ -69,7 +69,7 @@ async def test_a_client_that_leaves_while_waiting_gives_up_the_place_and_nothing
     await first
     await pool.run(done.append, 2)
 
-    assert left.value.status_code == GONE
+    assert left.value.status_code == CLIENT_CLOSED
     assert done == [2]
 
 
@@ -140,7 +140,7 @@ async def test_work_beside_is_killed_when_its_client_leaves_and_the_next_is_done
     with pytest.raises(Problem) as left:
         await work
 
-    assert left.value.status_code == GONE
+    assert left.value.status_code == CLIENT_CLOSED
     assert await pool.run_beside(partial(sum, [1, 2])) == 3
     assert is_gone(int(file.read_text()))
 

@@ -199,7 +199,7 @@ def test_the_title_block_says_who_answers_for_what(catalogue: Catalogue) -> None
     found = text(pdf(export, ENGLISH), pages=1)
     for words in ("Axis 7", "PLM-4711", "A. Müller", "Revision\nB", "HPN-20A-5-J6-BH-AF1", "Saved\n21 November 2026"):
         assert words in found
-    unsaved = text(pdf(replace(export, created=None, made=CREATED), ENGLISH), pages=1)
+    unsaved = text(pdf(replace(export, created=None, moment=CREATED), ENGLISH), pages=1)
     assert "Date\n21 November 2026" in unsaved and "Not saved" in unsaved
 
 

@@ -188,7 +188,7 @@ def test_data_are_valid_from_the_day_they_were_saved(catalogue: Catalogue) -> No
 
 def test_what_is_not_saved_is_valid_from_the_day_of_its_making(catalogue: Catalogue) -> None:
     made = datetime(2026, 3, 1, 13, 30, tzinfo=timezone(timedelta(hours=2)))
-    export = replace(typed_export_of(EVERYTHING, catalogue), created=None, made=made)
+    export = replace(typed_export_of(EVERYTHING, catalogue), created=None, moment=made)
     submodels = read(package(export, "3.1"))[0]
     assert str(values(submodels["TechnicalData"].get_referable("FurtherInformation"))["ValidDate"]) == "2026-03-01"
     information = values(submodels["PowerDriveTrainSizing"].get_referable("SizingProjectInformation"))

@@ -53,7 +53,7 @@ def test_a_list_is_replaced_whole() -> None:
 
 
 def test_centres_by_size_are_one_value_that_an_axis_inherits_or_replaces() -> None:
-    common = Common.model_validate({"output_load": {"shaft_centre_mm": {"others": 18, "20": 21}}}).sent
+    common = Common.model_validate({"output_load": {"shaft_centre_mm": {"others": 18, "20": 21}}}).as_json
     own, inherited = (
         resolve(worked_example(output_load={"radial_N": 400.0, "radial_position_mm": 45.0} | load), common)
         for load in ({"shaft_centre_mm": {"32A": 30.0}}, {})
@@ -103,7 +103,7 @@ def test_an_axis_that_cannot_be_calculated_is_open_and_says_why(own: Json, catal
     common = Common.model_validate(
         {"requirements": {"utilisation": 0.9, "ratios": [5]}, "output_load": {"life_h": 1e4}, "rank_by": "life"}
     )
-    answer = answer_of(own, common.sent, catalogue)
+    answer = answer_of(own, common.as_json, catalogue)
     assert (answer.status, answer.designation) == ("open", None)
     assert answer.faults and all(fault.detail for fault in answer.faults)
     assert phases_of(own) >= 0
@@ -140,7 +140,7 @@ def test_common_values_have_the_bounds_of_an_application_and_one_of_a_pair() -> 
         Common.model_validate({"requirements": {"utilisation": 2}})
     with pytest.raises(ValidationError, match="give one of"):
         Common.model_validate({"requirements": {"position_error_arcmin": 2, "position_error_mm": 2}})
-    assert Common.model_validate({"requirements": {"utilisation": None}, "output_load": None}).sent == {
+    assert Common.model_validate({"requirements": {"utilisation": None}, "output_load": None}).as_json == {
         "requirements": {}
     }
 

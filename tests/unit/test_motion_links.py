@@ -177,5 +177,5 @@ def test_a_button_opens_and_closes_the_columns_of_what_varies_without_script() -
     assert [dict(row) for row in opened.rows] == [{"T": "40", "n": "250", "t": "0.3"} | blank]
     assert (opened.focus, opened.application) == ("varying", read(PHASE).application)
     closed = read(f"{PHASE}&Tpk=55&npk=&Trms=&do=varying")
-    assert ("varying" in closed.shown, closed.application) == (False, read(PHASE).application)
-    assert "varying" in read(f"{PHASE}&Tpk=&npk=&Trms=").shown
+    assert ("varying" in closed.groups, closed.application) == (False, read(PHASE).application)
+    assert "varying" in read(f"{PHASE}&Tpk=&npk=&Trms=").groups

@@ -26,7 +26,7 @@ from hpn.tables.columns import ANY, Choices
 from hpn.tables.reading import reading_of
 from hpn.web.app import create_app
 from hpn.web.form.link_reader import parse
-from hpn.web.motor_tables import WANTED, as_text, motors_in
+from hpn.web.motor_tables import BOUNDS, as_text, motors_in
 from hpn.web.settings import Settings
 from hpn.words.reader import Reader
 from tests.build import LIFTING, TURNING, Json, cycle, phase, worked_example
@@ -138,7 +138,7 @@ def test_pairs_say_that_a_rotor_is_left_out_where_one_motor_is_judged_by_phases(
 
 def listed(text: str, **answers: str) -> tuple[list[MotorEntry], list[str], list[str]]:
     """Motors of a table, what is said of those left out, and the notes of the reading."""
-    table = reading_of(text, WANTED, Choices(of=ANY, **answers)).table  # type: ignore[arg-type]
+    table = reading_of(text, BOUNDS, Choices(of=ANY, **answers)).table  # type: ignore[arg-type]
     assert table is not None
     assert not table.questions
     found, said = motors_in(table)
@@ -196,7 +196,7 @@ def test_columns_of_the_torques_at_one_speed_are_the_points_of_a_curve() -> None
 def test_points_of_one_name_beside_other_figures_are_not_one_motor() -> None:
     """Of two rows with another inertia each, none says the curve of the other: which one counts is asked."""
     rows = "Motor;J [kg·cm²];curve speed [rpm];M S1 [Nm];curve peak torque [Nm]\nS60;1;0;2.8;7.2\nS60;{};3000;2.4;7\n"
-    one, other = (reading_of(rows.format(inertia), WANTED).table for inertia in (1, 2))
+    one, other = (reading_of(rows.format(inertia), BOUNDS).table for inertia in (1, 2))
     assert one is not None and other is not None
     assert [len(motor.curve or ()) for motor in motors_in(one)[0]] == [2] and not one.questions
     assert not motors_in(other)[0] and len(other.questions) == 1
@@ -237,7 +237,7 @@ def test_torques_at_one_speed_are_in_the_unit_of_their_headings(heads: str) -> N
     ],
 )
 def test_torques_at_one_speed_of_which_unit_or_factor_is_open_are_never_points(text: str) -> None:
-    table = reading_of(text, WANTED).table
+    table = reading_of(text, BOUNDS).table
     assert table is not None
     assert not any(motor.curve for motor in motors_in(table)[0])
     assert table.questions or table.problem
@@ -253,7 +253,7 @@ PARTS = ROWS + "S90\t5\t2\t3\t0\t4\t9\nS90\t\t\t\t3000\t4\t\nS95\t5\t2\t3\t9\t4\
 
 
 def test_a_part_of_a_point_is_asked_about_at_its_row_and_column() -> None:
-    table = reading_of(PARTS, WANTED).table
+    table = reading_of(PARTS, BOUNDS).table
     assert table is not None and not table.motors
     assert [one.text for one in table.questions] == [
         "Incomplete points of a torque curve, first in row 7: “curve peak torque [Nm]” is missing. What counts?"

@@ -62,7 +62,7 @@ def test_one_altered_digit_anywhere_on_a_report_is_named(
 ) -> None:
     """Digits are altered by pikepdf, in the content of the page; the report to compare with is made and read once."""
     report = pdf(typed_export_of(CASES[case], catalogue), ENGLISH)
-    monkeypatch.setattr(FileFormat, "made", lambda *_: report)
+    monkeypatch.setattr(FileFormat, "content", lambda *_: report)
     monkeypatch.setattr(Format, "lines", cache(Format.lines))
     count = count_of_digits(report)
     assert count > 500
@@ -147,7 +147,7 @@ def test_drawings_of_another_program_are_listed_as_not_checked(
     catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     report = pdf(typed_export_of(CASES["example"], catalogue), ENGLISH)
-    monkeypatch.setattr(FileFormat, "made", lambda *_: with_creator(report, "another"))
+    monkeypatch.setattr(FileFormat, "content", lambda *_: with_creator(report, "another"))
     verdict = verify(report, catalogue)
     assert (verdict.differs, len(verdict.unchecked)) == ((), 1)
     assert verdict.unchecked[0].startswith("all pages: what is drawn")

@@ -5,14 +5,14 @@ import pytest
 from hpn.catalogue import Catalogue
 from hpn.web.door.bodies import pairs_of
 from hpn.web.form.link_reader import parse
-from hpn.web.pages.calculator import LiveResult, answered
+from hpn.web.pages.calculator import LiveResult, form_and_answer
 
 EXAMPLE = "T=40&n=250&t=0.3&T=32&n=500&t=3&T=20&n=250&t=0.4&tp=4&Tk=200"
 
 
 def answer_to(query: str, catalogue: Catalogue) -> LiveResult:
     """Result of a link."""
-    form, answer = answered(parse(pairs_of(query)), catalogue)
+    form, answer = form_and_answer(parse(pairs_of(query)), catalogue)
     assert answer, form.problems
     return answer
 

@@ -119,7 +119,7 @@ CROSSING = (
 )
 """Inputs that may cross 0. Others keep their sign, or their bound at 0."""
 
-KEPT = ("speed_rpm", "pause_s", "inertia_kgm2", "load_inertia_kgm2", "mass_kg", "angle_deg", "distance_mm")
+SIGNED = ("speed_rpm", "pause_s", "inertia_kgm2", "load_inertia_kgm2", "mass_kg", "angle_deg", "distance_mm")
 """Inputs with a bound of 0 or below that a tolerance must not reach."""
 
 WITHOUT = (
@@ -185,8 +185,8 @@ class Interval:
 KEEPS_SIGN = N_("must leave the input on its side of 0")
 BELOW = N_("must leave the input at or above its bound {bound}")
 ABOVE = N_("must leave the input at or below its bound {bound}")
-HELD = N_("must leave {upper} at or above {lower} everywhere: the tolerances of both overlap")
-WITH_VALUES = {"tolerance_least": BELOW, "tolerance_most": ABOVE, "tolerance_held": HELD}
+OVERLAP = N_("must leave {upper} at or above {lower} everywhere: the tolerances of both overlap")
+WITH_VALUES = {"tolerance_least": BELOW, "tolerance_most": ABOVE, "tolerance_held": OVERLAP}
 """Texts of errors with values, by their codes."""
 
 NOT_GIVEN = N_("the input is 0 or not given, so it takes no tolerance")
@@ -281,7 +281,7 @@ def _interval(path: str, part: BaseModel, name: str, place: Place, tolerance: To
     value: float = getattr(part, name)
     low, high = tolerance.around(value)
     least, most = _bounds(type(part), name) or (-math.inf, math.inf)
-    is_open = name in KEPT or (name == "duration_s")
+    is_open = name in SIGNED or (name == "duration_s")
     if name not in CROSSING:
         least, most = (max(least, 0.0), most) if value > 0 else (least, min(most, 0.0))
     return Interval(path, place, value, low, high, least, most, is_open)
@@ -317,7 +317,7 @@ def _contradictions(application: Any, intervals: Mapping[Place, Interval]) -> It
         high = load.high if load else stop.brake.load_torque_Nm or 0.0
         low = opposing.low if opposing else stop.brake.opposing_torque_Nm
         if low < high:
-            yield (own.path,), _held(names[1], names[0])
+            yield (own.path,), _overlap(names[1], names[0])
 
 
 def _of_phase(
@@ -343,7 +343,7 @@ def _of_phase(
     ):
         known = getattr(phase, lower) is not None and getattr(phase, upper) is not None
         if own.place[2] in (lower, upper) and known and ends(lower)[1] > ends(upper)[0] * (1 + ROOM):
-            yield (own.path,), _held(upper, lower)
+            yield (own.path,), _overlap(upper, lower)
 
 
 def moved_by(interval: Interval, value: float, *, is_least: bool) -> tuple[float, float]:
@@ -355,5 +355,5 @@ def moved_by(interval: Interval, value: float, *, is_least: bool) -> tuple[float
     return value * low, value * high
 
 
-def _held(upper: str, lower: str) -> PydanticCustomError:
-    return PydanticCustomError("tolerance_held", HELD, {"upper": upper, "lower": lower})
+def _overlap(upper: str, lower: str) -> PydanticCustomError:
+    return PydanticCustomError("tolerance_held", OVERLAP, {"upper": upper, "lower": lower})

@@ -95,7 +95,7 @@ async def _copy_of(store: Store, machine: Machine) -> bytes:
     for line in reversed(await store.revisions(machine.id)):
         content = await store.revision(machine.id, line.label)
         assert content is not None
-        copies.append(replies.frozen(line, revision.decode(content[1])))
+        copies.append(replies.revision_reply(line, revision.decode(content[1])))
     whole = msgspec.structs.asdict(replies.machine(machine))
     return msgspec.json.format(encode({**whole, "revisions": copies}), indent=1)
 
@@ -126,9 +126,9 @@ def _draft(options: argparse.Namespace, content: bytes, catalogue: Catalogue) ->
     if not options.file.endswith(TABLES):
         raise MachineError(f"{options.file}: the suffix must be .json, or one of a table: {', '.join(TABLES)}")
     require("fleet")
-    from hpn.web.axis_tables import WANTED  # needs Arrow
+    from hpn.web.axis_tables import BOUNDS  # needs Arrow
 
-    table, faults = read_answered(content, WANTED, options.answer)
+    table, faults = read_answered(content, BOUNDS, options.answer)
     if faults:
         raise MachineError("\n".join(f"--answer {fault.text}" for fault in faults))
     drafts = sizing_of(table, catalogue)()

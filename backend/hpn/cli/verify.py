@@ -25,7 +25,7 @@ def run(options: argparse.Namespace) -> int:
     """Print the number of equal figures, the differences with reasons, and the unchecked lines; returns 0 or
     DIFFERS."""
     catalogue = Settings().catalogue()
-    question = _asked(options.application) if options.application else None
+    question = _application_in(options.application) if options.application else None
     try:
         verdict = verify(_content(options.file), catalogue, question)
     except UnreadableFileError as error:
@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     return DIFFERS if verdict.differs else 0
 
 
-def _asked(path: Path) -> FileSubject:
+def _application_in(path: Path) -> FileSubject:
     """Content of a JSON file: an application, or a saved selection with the gear of its files."""
     try:
         value = json.loads(_content(path))

@@ -117,11 +117,11 @@ def answers(axes: Sequence[AxisQuestion], catalogue: Catalogue) -> list[AxisAnsw
     applications = [each and each.model_copy() for each in (question.resolved.application for question in axes)]
     codes = {id(each): question.ordering_code for each, question in zip(applications, axes, strict=True)}
 
-    def answered(judged: Judgement) -> AxisAnswer | InputError:
-        return _answered(judged, codes[id(judged.application)])
+    def answer_of_judged(judged: Judgement) -> AxisAnswer | InputError:
+        return _answer(judged, codes[id(judged.application)])
 
     sound = [application for application in applications if application is not None]
-    judged = iter(judge_batch(sound, catalogue, answered))
+    judged = iter(judge_batch(sound, catalogue, answer_of_judged))
     outcomes = (None if application is None else next(judged) for application in applications)
     return [_whole(question.resolved, answer, catalogue) for question, answer in zip(axes, outcomes, strict=True)]
 
@@ -133,7 +133,7 @@ def _whole(resolved: Resolved, answer: AxisAnswer | InputError | None, catalogue
     return structs.replace(answer, not_asked=resolved.not_asked, catalogue_version=catalogue.version)
 
 
-def _answered(judged: Judgement, code: str | None) -> AxisAnswer | InputError:
+def _answer(judged: Judgement, code: str | None) -> AxisAnswer | InputError:
     evaluation, index = judged.evaluation, judged.index
     try:
         gear = _foremost(evaluation, index) if code is None else _ordered(evaluation, code)

@@ -117,10 +117,10 @@ class Common(Model):
     @property
     def values(self) -> Json:
         """Given values, by their paths."""
-        return dict(flat(self.sent))
+        return dict(flat(self.as_json))
 
     @property
-    def sent(self) -> Json:
+    def as_json(self) -> Json:
         """Given values as JSON."""
         return self.model_dump(mode="json", exclude_none=True)
 

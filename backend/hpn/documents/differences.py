@@ -154,10 +154,10 @@ def _weight(axis: DifferentAxis) -> tuple[int, float, int]:
 
 def _axis(number: int, old: FrozenAxis | None, new: FrozenAxis | None) -> DifferentAxis | None:
     """Differences of an axis; None where there are none."""
-    inputs, answered = list[DifferentInput](), list[DifferentAnswer]()
+    inputs, answers = list[DifferentInput](), list[DifferentAnswer]()
     if old is not None and new is not None:
-        inputs, answered = list(_inputs(old, new)), list(_answered(old.answer, new.answer))
-        if not inputs and not answered:
+        inputs, answers = list(_inputs(old, new)), list(_answer_differences(old.answer, new.answer))
+        if not inputs and not answers:
             return None
     sides = [None if axis is None else AxisSide.of(axis) for axis in (old, new)]
     used = [side.utilisation if side else None for side in sides]
@@ -170,12 +170,12 @@ def _axis(number: int, old: FrozenAxis | None, new: FrozenAxis | None) -> Differ
         side_to=sides[1],
         effect=None if used[0] is None or used[1] is None else used[1] - used[0],
         inputs=tuple(inputs),
-        verdicts=tuple(each for each in answered if each.field in VERDICTS),
-        figures=tuple(each for each in answered if each.field in FIGURES),
+        verdicts=tuple(each for each in answers if each.field in VERDICTS),
+        figures=tuple(each for each in answers if each.field in FIGURES),
     )
 
 
-def _answered(old: AxisAnswer, new: AxisAnswer) -> Iterator[DifferentAnswer]:
+def _answer_differences(old: AxisAnswer, new: AxisAnswer) -> Iterator[DifferentAnswer]:
     """Verdicts and figures that differ, without those that the version of one answer did not know."""
     unknown = {*old.unknown, *new.unknown}
     for name in (*VERDICTS, *FIGURES):

@@ -18,7 +18,7 @@ NOT_TOGETHER = N_("there is no gear of this size and ratio (available: {offered}
 MOTORS_NAMED = 20
 """Motors, at most, that an error names."""
 
-SIZES_NAMED, SHOWN = 20, 40
+SIZES_NAMED, LONGEST = 20, 40
 """Unknown sizes, at most, that an error names, and characters of each."""
 
 
@@ -61,14 +61,14 @@ def _require_sizes_of_centres(load: OutputLoad, catalogue: Catalogue) -> None:
 def _none_such(size: str, there: Sequence[str]) -> Sentence:
     near = likeness(size, (OTHERS,))  # not among sizes: they differ by a digit, so each is as likely
     sizes = [*(Sentence("{text}", {"text": each}) for each in there), Sentence(FOR_OTHERS)]
-    values: dict[str, Value] = {"value": size[:SHOWN], "listed": listed(sizes)}
+    values: dict[str, Value] = {"value": size[:LONGEST], "listed": listed(sizes)}
     return Sentence(LOOKS_LIKE, {**values, "near": near}, ("near",)) if near else Sentence(NOT_THERE, values)
 
 
 @lru_cache(maxsize=256)
 def _restricted(catalogue: Catalogue, sizes: tuple[str, ...] | None, ratios: tuple[int, ...] | None) -> GearList:
-    for wanted, there in ((sizes, catalogue.sizes), (ratios, catalogue.ratios)):
-        if wanted is not None and not set(there).issuperset(wanted):
+    for names, there in ((sizes, catalogue.sizes), (ratios, catalogue.ratios)):
+        if names is not None and not set(there).issuperset(names):
             raise _not_there(sizes or (), ratios or (), catalogue)
     gears = catalogue.restricted(sizes, ratios)
     if not gears.rows:
@@ -98,8 +98,8 @@ def _not_there(sizes: Sequence[str], ratios: Sequence[int], catalogue: Catalogue
             ("requirements", name, index),
             Sentence(NOT_THERE, {"value": str(value), "listed": ", ".join(map(str, there))}),
         )
-        for name, wanted, there in (("sizes", sizes, catalogue.sizes), ("ratios", ratios, catalogue.ratios))
-        for index, value in enumerate(wanted)
+        for name, names, there in (("sizes", sizes, catalogue.sizes), ("ratios", ratios, catalogue.ratios))
+        for index, value in enumerate(names)
         if value not in there
     ]
     return InputError(*problems)

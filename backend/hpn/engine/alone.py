@@ -65,8 +65,8 @@ class Alone:
         """Worst utilisations with the inputs of each path exact in turn and the others at the same points, shape
         (paths,).
         """
-        left = [[one for one in self.intervals if one.path != path] for path in paths]
-        members = [members_of(self.application, self.catalogue, some, self.members) for some in left]
+        rest = [[one for one in self.intervals if one.path != path] for path in paths]
+        members = [members_of(self.application, self.catalogue, some, self.members) for some in rest]
         worst: FloatArray = self._worst(members, SAMPLES)[1].utilisation[:, 0]
         return worst
 

@@ -305,7 +305,7 @@ class _Alike:
             every = self._at(np.arange(self._boxes[0].series.shape[-1]))
             T, peak, rms, least = (series[name][every] for name in WITH_TORQUE)
             by_default = least_torque(torque_Nm=T, peak_torque_Nm=peak, rms_torque_Nm=rms)
-            series["least_torque_Nm"][every] = np.where(self._given("least_torque_Nm"), least, by_default)
+            series["least_torque_Nm"][every] = np.where(self._is_given("least_torque_Nm"), least, by_default)
 
     def _at(self, phases: IntArray) -> tuple[IntArray, int, IntArray]:
         return self._rows[:, None], 0, phases
@@ -315,7 +315,7 @@ class _Alike:
         values: FloatArray = np.array([getattr(box, name) for box in self._boxes])[self._which][:, of]
         return values
 
-    def _given(self, name: str) -> NDArray[np.bool_]:
+    def _is_given(self, name: str) -> NDArray[np.bool_]:
         """True for phases with a given value of a figure that otherwise follows another, shape (rows, phases)."""
         is_given: NDArray[np.bool_] = np.array([box.own[name] for box in self._boxes])[self._which]
         return is_given
@@ -331,7 +331,7 @@ class _Alike:
             own = series[name][at]
             grown = np.zeros(1) if name == "least_torque_Nm" else own + np.abs(x - value)
             moved = np.where(reaches, grown, own * factor)
-            series[name][at] = np.where(self._given(name)[:, phases], moved, np.abs(x))
+            series[name][at] = np.where(self._is_given(name)[:, phases], moved, np.abs(x))
 
     def _move_speeds(self, series: Mapping[str, FloatArray], column: PhaseIntervals) -> None:
         """Set speeds; peaks follow by one factor."""
@@ -339,7 +339,7 @@ class _Alike:
         at, x = self._at(phases), self._points[:, of]
         peak = series["peak_speed_rpm"][at] * np.abs(x / self._of_intervals("value", of))
         series["speed_rpm"][at] = np.abs(x)
-        series["peak_speed_rpm"][at] = np.where(self._given("peak_speed_rpm")[:, phases], peak, np.abs(x))
+        series["peak_speed_rpm"][at] = np.where(self._is_given("peak_speed_rpm")[:, phases], peak, np.abs(x))
 
 
 def moved(application: Application, values: Mapping[Place, float]) -> Application:

@@ -260,7 +260,7 @@ def members_of(
 ) -> Members:
     """Boxes of an application with its own intervals, or with others, at the points of the members they are `like`."""
     if intervals is None:
-        return _given(_Same(application), catalogue)
+        return _cached(_Same(application), catalogue)
     moving = moving_of(intervals)
     return Members(application, catalogue, tuple(one for one in intervals if one not in moving), moving, like)
 
@@ -279,6 +279,6 @@ class _Same:
 
 
 @lru_cache(maxsize=RECENT)
-def _given(same: _Same, catalogue: Catalogue) -> Members:
+def _cached(same: _Same, catalogue: Catalogue) -> Members:
     """Boxes of an application with its own intervals, cached for verdict, table, deciding inputs and files."""
     return members_of(same.application, catalogue, same.application.intervals)

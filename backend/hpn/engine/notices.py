@@ -223,9 +223,11 @@ def _on_the_motor(application: Application, evaluation: Evaluation, index: int) 
     elif requirements.motor is not None or application.rank_by == "motor_torque":
         yield notice("efficiency_supplied" if catalogue.efficiency else "efficiency_unknown")
         curved = (gear for gear in evaluation.gears.rows if gear.designation in catalogue.efficiency)
-        left = [gear.designation for gear in curved if leaves_curve(catalogue, gear, evaluation.case.duty, index)]
-        if left:
-            yield notice("efficiency_beyond_curve", names=", ".join(left))
+        beyond_curve = [
+            gear.designation for gear in curved if leaves_curve(catalogue, gear, evaluation.case.duty, index)
+        ]
+        if beyond_curve:
+            yield notice("efficiency_beyond_curve", names=", ".join(beyond_curve))
     if requirements.motor is not None or application.rank_by == "motor_torque":
         included = not np.isnan(evaluation.case.inputs["requirements.motor.inertia_kgm2"].item(index))
         moving = application.duty_cycle.motion is not None

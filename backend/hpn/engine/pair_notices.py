@@ -22,7 +22,7 @@ OF_ONE_GEAR = frozenset(("gear_below_motor", "limit_below_need", "ramp_shorter_t
 JUDGED = ("maximum_speed_rpm", "rated_torque_Nm", "peak_torque_Nm")
 """Figures that a full judgement of a motor needs; lists often lack rated speed and inertia."""
 
-SAID = OF_ONE_GEAR | {"rotor_not_included"}
+ELSEWHERE = OF_ONE_GEAR | {"rotor_not_included"}
 """These notices, and the one on all motors."""
 
 NAMED = 20
@@ -39,8 +39,8 @@ def notices_on(
     """Notices on all pairs; a motor without inertia is not rated if an inertia ratio or a resonance is limited."""
     needs_inertia = asks_inertia_ratio(application) or least_Hz is not None
     yield notice("pairs_not_mated")
-    if lost := _beyond_ratios(application, motors, gears, catalogue):
-        names, least = lost
+    if beyond_ratios := _beyond_ratios(application, motors, gears, catalogue):
+        names, least = beyond_ratios
         yield notice("no_ratio_for_motor", names=first_of(names, NAMED), rate_kW_per_s=least / 1000)
     partial = [one.designation for one in motors if not one.curve and None in [getattr(one, name) for name in JUDGED]]
     if partial:
@@ -53,7 +53,7 @@ def notices_on(
     known = next((motor for motor in motors if motor.inertia_kgm2 is not None), motors[0])
     equipped = with_figures(application, known)
     evaluation = evaluate(Duty.of([equipped]), gears, catalogue)
-    yield from (one for one in notices_of(equipped, evaluation, 0) if one.code not in SAID)
+    yield from (one for one in notices_of(equipped, evaluation, 0) if one.code not in ELSEWHERE)
 
 
 def _continuous_Nm(motor: MotorEntry) -> float:

@@ -210,7 +210,7 @@ def _with_resonance(
 
 
 def pairs_of(
-    wanted: Pairing,
+    question: Pairing,
     motors: Sequence[MotorEntry],
     catalogue: Catalogue,
     link_of: Callable[[Application, str], str | None],
@@ -218,14 +218,14 @@ def pairs_of(
     failing: bool = False,
 ) -> Pairs:
     """The first pairs of a request, suitable or failing; `link_of` takes application and gear."""
-    table = table_of(wanted.application, motors, catalogue, wanted.drive_resonance_Hz)
-    order = table.rejected() if failing else table.ranked(wanted.rank_by)
-    if wanted.best_of == "motor":
+    table = table_of(question.application, motors, catalogue, question.drive_resonance_Hz)
+    order = table.rejected() if failing else table.ranked(question.rank_by)
+    if question.best_of == "motor":
         order = table.best_of_motors(order)
     return Pairs(
-        pairs=list(pairs_at(table, order[: wanted.top].tolist(), wanted.application, link_of)),
+        pairs=list(pairs_at(table, order[: question.top].tolist(), question.application, link_of)),
         failing=table.failing(),
-        notices=tuple(notices_on(wanted.application, motors, table.gears, catalogue, wanted.drive_resonance_Hz)),
+        notices=tuple(notices_on(question.application, motors, table.gears, catalogue, question.drive_resonance_Hz)),
     )
 
 

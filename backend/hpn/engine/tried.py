@@ -161,8 +161,10 @@ def followed(application: Application, way: Way) -> Application:
             )
             stop = stop and _pulled(stop, cycle.motion)
     if cycle.motion is not None and parts["duty_cycle"].motion is None:
-        kept = {path: one for path, one in (application.tolerances or {}).items() if not path.startswith("motion.")}
-        parts["tolerances"] = kept or None
+        tolerances = {
+            path: one for path, one in (application.tolerances or {}).items() if not path.startswith("motion.")
+        }
+        parts["tolerances"] = tolerances or None
     if (output := application.output_load) is not None:
         loads = {name: _scaled(getattr(output, name), load) for name in LOADS}
         loads |= {"from_motion": output.from_motion and parts["duty_cycle"].motion is not None}

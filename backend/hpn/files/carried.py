@@ -33,9 +33,9 @@ class CarriedTitle(msgspec.Struct, frozen=True):
 _titled = msgspec.json.Decoder(CarriedTitle).decode
 
 
-def carried(export: Export, reader: Reader) -> Mapping[str, bytes]:
+def parts_of(export: Export, reader: Reader) -> Mapping[str, bytes]:
     """Parts that a file carries, by their names; a saved answer byte for byte."""
-    date = export.made and export.made.astimezone(UTC).date()
+    date = export.moment and export.moment.astimezone(UTC).date()
     titled = CarriedTitle(export.link, export.heading, export.created, date, export.chosen, reader.marker)
     return {
         APPLICATION: export.application.model_dump_json(exclude_none=True).encode(),
@@ -59,7 +59,7 @@ def export_of(parts: Mapping[str, bytes], catalogue: Catalogue) -> tuple[Export,
         link=titled.link,
         heading=titled.heading,
         created=titled.created,
-        made=datetime.combine(titled.made, time(), UTC) if titled.made else None,
+        moment=datetime.combine(titled.made, time(), UTC) if titled.made else None,
         catalogue=catalogue,
         reply=parts[RESULT],
         chosen=titled.chosen,

@@ -48,7 +48,7 @@ class Export:
     """Application, its selection, and the data that lead a reader back to both.
 
     `link` is absolute. `created` is the moment of saving, in a time zone. For an unsaved selection it is None, and
-    files show the day of `made` instead, the moment of their making. `catalogue` has the figures behind the selection;
+    files show the day of `moment` instead, when they are made. `catalogue` has the figures behind the selection;
     a catalogue of another version is not used, and the files say so. `reply` is a saved selection byte for byte.
     `chosen` is the gear that the user looks at instead of the foremost one.
     """
@@ -58,7 +58,7 @@ class Export:
     link: str
     heading: ExportTitle = field(default_factory=ExportTitle)
     created: datetime | None = None
-    made: datetime | None = None
+    moment: datetime | None = None
     catalogue: Catalogue | None = None
     reply: bytes = b""
     chosen: str = ""

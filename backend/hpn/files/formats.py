@@ -16,7 +16,7 @@ class FileFormat(NamedTuple):
     extras: tuple[str, ...]
     is_translated: bool = True
 
-    def made(self, export: Any, reader: Reader, **chosen: Any) -> bytes:
+    def content(self, export: Any, reader: Reader, **chosen: Any) -> bytes:
         """File of an export, in the reader's language where the format has one."""
         content: bytes = resolve_name(self.maker)(export, *([reader] if self.is_translated else []), **chosen)
         return content

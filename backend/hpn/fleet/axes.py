@@ -210,7 +210,7 @@ class Axes:
             place = np.where(inside, self._starts[axes][:, None] + np.arange(longest), 0)
             series = [(values[place] * inside)[:, None, :] for values in self._phases.values()]
         assert self._inputs is not None
-        numbers = {path: values[axes, None] for path, values in self._wanted.items()}
+        numbers = {path: values[axes, None] for path, values in self._values.items()}
         texts = (getattr(self._inputs, name)[self._pattern[axes]] for name in TEXTS)
         of_sizes = self._inputs.shaft_centres_mm.items()
         centres = {size: values[self._pattern[axes]] for size, values in of_sizes}
@@ -231,13 +231,13 @@ class Axes:
         return values | {"torque_sign": np.sign(self._numbers("torque_Nm"))}
 
     @cached_property
-    def _wanted(self) -> dict[str, FloatArray]:
+    def _values(self) -> dict[str, FloatArray]:
         """Every number that the engine needs, shape (N,): the axis's own where it is given, else its pattern's."""
-        wanted = {}
+        numbers = {}
         for path, values in self._inputs.numbers.items() if self._inputs else ():
             own, of_pattern = self._numbers("pause_s" if path == PAUSE else path), values[self._pattern, 0]
-            wanted[path] = np.where(np.isnan(own), of_pattern, own)
-        return wanted
+            numbers[path] = np.where(np.isnan(own), of_pattern, own)
+        return numbers
 
 
 def _is_number(name: str) -> bool:
@@ -283,13 +283,13 @@ def _inside(column: InputColumn, values: FloatArray) -> BoolArray:
 
 def cells_of(table: pa.Table, rows: Sequence[int]) -> Iterator[tuple[int, dict[str, Any]]]:
     """Rows with their cells, without columns that none of these rows fills."""
-    wanted = table.take(pa.array(rows, pa.int64()))
-    wanted = wanted.select([name for name in wanted.column_names if wanted[name].null_count < len(rows)])
-    size = np.full(len(rows), max(wanted.num_columns, 1))
-    for column in wanted.columns:
+    chosen = table.take(pa.array(rows, pa.int64()))
+    chosen = chosen.select([name for name in chosen.column_names if chosen[name].null_count < len(rows)])
+    size = np.full(len(rows), max(chosen.num_columns, 1))
+    for column in chosen.columns:
         if is_list(column.type):
             size += np.asarray(pc.fill_null(pc.list_value_length(column), 0))
     starts = np.unique(np.cumsum(size) // MOST_CELLS, return_index=True)[1].tolist()
     for start, end in pairwise([*starts, len(rows)]):
-        some = wanted.slice(start, end - start).to_pylist() if wanted.num_columns else [{}] * (end - start)
+        some = chosen.slice(start, end - start).to_pylist() if chosen.num_columns else [{}] * (end - start)
         yield from zip(rows[start:end], some, strict=True)

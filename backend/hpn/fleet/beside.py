@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from hpn.catalogue import Catalogue
 from hpn.fleet.faults import CellFault
 from hpn.fleet.order import FleetError, Order
-from hpn.tables.answers import answered
+from hpn.tables.answers import reading_by_answers
 from hpn.tables.columns import NO_CHOICES, Choices
 from hpn.tables.files import TableBounds, text_of
 from hpn.tables.reading import Reading, reading_of
@@ -60,10 +60,10 @@ class MachineReading:
 
 
 def read_machine(
-    content: bytes | str, wanted: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
+    content: bytes | str, bounds: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
 ) -> MachineReading:
     """Reading of a file or a text, as from `reading_of`."""
-    reading = reading_of(content, wanted, choices, assumed)
+    reading = reading_of(content, bounds, choices, assumed)
     if not reading.suffix:
         rows = reading.table.axes if reading.table else ()
         lists = (row.get("torque_Nm") for row in rows)
@@ -82,12 +82,12 @@ def read_machine(
 
 
 def read_answered(
-    content: bytes, wanted: TableBounds, texts: Sequence[str]
+    content: bytes, bounds: TableBounds, texts: Sequence[str]
 ) -> tuple[MachineReading, tuple[Sentence, ...]]:
     """Reading of a file by a program's answers, and the sentences on wrong answers; no unit is assumed."""
-    return answered(
+    return reading_by_answers(
         texts,
-        wanted.inputs,
-        lambda choices: read_machine(content, wanted, choices),
+        bounds.inputs,
+        lambda choices: read_machine(content, bounds, choices),
         lambda machine: machine.reading.table.columns if machine.reading.table else (),
     )

@@ -51,12 +51,12 @@ class InputColumn(InputField):
         item = {"string": pa.string(), "boolean": pa.bool_()}.get(kind, pa.float64())
         return pa.list_(item) if self.is_list else item
 
-    def takes(self, type: pa.DataType, wanted: pa.DataType) -> bool:
+    def takes(self, type: pa.DataType, target: pa.DataType) -> bool:
         """True where a column of an Arrow type can be read as a wanted type."""
         type = plain_type(type)
         if kinds.is_null(type):
             return not self.required
-        if is_list(wanted):
+        if is_list(target):
             return is_list(type) and self._takes_item(type.value_type)
         return self._takes_item(type)
 
@@ -227,7 +227,7 @@ def _plain(value: Any, column: InputColumn) -> Any:
     return float(value) if is_number and column.kind not in (*TEXTS, "boolean") else value
 
 
-def _in_json(text: str, wanted: type) -> Any:
+def _in_json(text: str, kind: type) -> Any:
     """Value of a JSON text, its whole numbers as floats; the text itself where it is invalid or of another type, which
     the models refuse."""
     try:
@@ -235,7 +235,7 @@ def _in_json(text: str, wanted: type) -> Any:
         value = json.loads(text, parse_int=float)
     except (ValueError, RecursionError):
         return text
-    return value if isinstance(value, wanted) else text
+    return value if isinstance(value, kind) else text
 
 
 def _column(name: str, field: InputField, *, is_list: bool) -> InputColumn:

@@ -294,25 +294,25 @@ def _as_utf8(content: bytes) -> bytes:
 
 
 def _parsed(
-    texts: pa.Array, column: InputColumn | None, wanted: pa.DataType
+    texts: pa.Array, column: InputColumn | None, target: pa.DataType
 ) -> tuple[pa.Array, list[tuple[int, Reason]]]:
     """Values of CSV cells, and the rows of invalid cells with the reasons."""
-    if column is None or pa.types.is_string(wanted):
+    if column is None or pa.types.is_string(target):
         broken = pc.fill_null(pc.match_substring(texts, REPLACED), False)
         return pc.if_else(broken, None, texts), [(int(row), NOT_UTF8) for row in np.flatnonzero(np.asarray(broken))]
-    if is_list(wanted):
+    if is_list(target):
         kind = list[str | None] if column.kind == "string" else list[float | None]
-        return _one_by_one(texts, msgspec.json.Decoder(kind).decode, wanted, no_list(column))
+        return _one_by_one(texts, msgspec.json.Decoder(kind).decode, target, no_list(column))
     texts = pc.ascii_trim_whitespace(texts)
     if column.kind == "boolean":
         is_flag = pc.match_substring_regex(texts, "^(true|false|0|1)$", ignore_case=True)
         wrong = np.flatnonzero(np.asarray(pc.fill_null(pc.invert(is_flag), False)))
-        return pc.if_else(is_flag, texts, None).cast(wanted), [(int(row), NO_FLAG) for row in wrong]
+        return pc.if_else(is_flag, texts, None).cast(target), [(int(row), NO_FLAG) for row in wrong]
     numbers = pc.match_substring_regex(texts, f"^({NUMBER.pattern})$", ignore_case=True)
     wrong = np.flatnonzero(np.asarray(pc.fill_null(pc.invert(numbers), False)))
     if len(wrong):
         texts = pc.if_else(numbers, texts, None)
-    return texts.cast(wanted), [(int(row), NO_NUMBER) for row in wrong]
+    return texts.cast(target), [(int(row), NO_NUMBER) for row in wrong]
 
 
 def no_list(column: InputColumn) -> Reason:
@@ -321,7 +321,7 @@ def no_list(column: InputColumn) -> Reason:
 
 
 def _one_by_one(
-    cells: pa.Array, parse: Any, wanted: pa.DataType, reason: Reason
+    cells: pa.Array, parse: Any, target: pa.DataType, reason: Reason
 ) -> tuple[pa.Array, list[tuple[int, Reason]]]:
     values, wrong = [], []
     for row, cell in enumerate(cells.to_pylist()):
@@ -330,4 +330,4 @@ def _one_by_one(
         except (ValueError, RecursionError):
             values.append(None)
             wrong.append((row, reason))
-    return pa.array(values, wanted), wrong
+    return pa.array(values, target), wrong

@@ -51,11 +51,11 @@ def _with_axes(batches: Iterator[RowBatch]) -> Iterator[RowBatch]:
     last = _Last()
     for batch in batches:
         if batch.rows.num_rows:
-            batch, last = _filled(batch, last)
+            batch, last = _with_axis(batch, last)
             yield batch
 
 
-def _filled(batch: RowBatch, before: _Last) -> tuple[RowBatch, _Last]:
+def _with_axis(batch: RowBatch, before: _Last) -> tuple[RowBatch, _Last]:
     count = batch.rows.num_rows
     axis = batch.rows[AXIS].combine_chunks()
     missing = np.asarray(pc.is_null(axis))
@@ -75,16 +75,16 @@ def _filled(batch: RowBatch, before: _Last) -> tuple[RowBatch, _Last]:
 
 def _gathered(batches: Iterator[RowBatch]) -> Iterator[RowBatch]:
     """Axes from rows of phases: an axis ends where another begins."""
-    left: RowBatch | None = None
+    rest: RowBatch | None = None
     for batch in batches:
-        rows = batch if left is None else joined([left, batch])
+        rows = batch if rest is None else joined([rest, batch])
         starts, count = run_starts(rows.rows[AXIS]), rows.rows.num_rows
         if len(starts) > 1:
-            yield _listed(rows.between(0, int(starts[-1])), starts[:-1])
+            yield _as_lists(rows.between(0, int(starts[-1])), starts[:-1])
         last = int(starts[-1])
-        left = rows.between(last, min(count, last + MAXIMUM_PHASES + 1))  # the reason stays the same
-    if left is not None:
-        yield _listed(left, np.zeros(1, np.intp))
+        rest = rows.between(last, min(count, last + MAXIMUM_PHASES + 1))  # the reason stays the same
+    if rest is not None:
+        yield _as_lists(rest, np.zeros(1, np.intp))
 
 
 def run_starts(axis: pa.ChunkedArray) -> IntArray:
@@ -107,7 +107,7 @@ def _shortened(batch: RowBatch, starts: IntArray) -> tuple[RowBatch, IntArray]:
     return RowBatch(batch.rows.filter(pa.array(mask)), faults), moved[starts]
 
 
-def _listed(batch: RowBatch, starts: IntArray) -> RowBatch:
+def _as_lists(batch: RowBatch, starts: IntArray) -> RowBatch:
     """Axes whose phases begin at given rows: columns of phases become lists, for others the first row counts."""
     batch, starts = _shortened(batch, starts)
     rows, first = batch.rows, pa.array(starts)
@@ -118,11 +118,11 @@ def _listed(batch: RowBatch, starts: IntArray) -> RowBatch:
         else rows[name].take(first)
         for name in rows.column_names
     ]
-    faults = [*_placed(batch.faults, starts), *_differing(rows, starts)]
+    faults = [*_faults_of_axes(batch.faults, starts), *_differing(rows, starts)]
     return RowBatch(pa.Table.from_arrays(columns, names=rows.column_names), faults)
 
 
-def _placed(faults: Sequence[CellFault], starts: IntArray) -> Iterator[CellFault]:
+def _faults_of_axes(faults: Sequence[CellFault], starts: IntArray) -> Iterator[CellFault]:
     """Faults of rows as faults of axes, each once."""
     distinct = {(fault.row, fault.column, fault.reason.text): fault for fault in faults}
     for _, fault in sorted(distinct.items()):

@@ -88,12 +88,12 @@ def with_nearest(answers: pa.Table, open_axes: pa.Table, catalogue: Catalogue) -
 
 def _open_axes(order: Order, names: pa.ChunkedArray) -> pa.Table:
     """Axes with these names in list form, their names as text."""
-    pieces, count, wanted = list[pa.Table](), 0, names.combine_chunks()
+    pieces, count, chosen = list[pa.Table](), 0, names.combine_chunks()
     for axes in axes_of(open_axes(order.axes, order.ignored)):
         rows = axes.rows.set_column(axes.rows.column_names.index(AXIS), AXIS, axes.rows[AXIS].cast(pa.string()))
-        pieces.append(rows.filter(pc.is_in(rows[AXIS], wanted)))
+        pieces.append(rows.filter(pc.is_in(rows[AXIS], chosen)))
         count += pieces[-1].num_rows
-        if count == len(wanted):
+        if count == len(chosen):
             break
     return pa.concat_tables(pieces)
 

@@ -76,13 +76,13 @@ class TableAxis(NamedTuple):
 
 def axes_in(rows: Sequence[Cells], faults: Sequence[CellFault] = ()) -> list[TableAxis]:
     """Axes of the rows of a table, each once; an axis with a lost cell has only its name."""
-    lost = dict[int, list[CellFault]]()
+    faults_by_axis = dict[int, list[CellFault]]()
     for fault in faults:
-        lost.setdefault(fault.row, []).append(fault)
+        faults_by_axis.setdefault(fault.row, []).append(fault)
     places = dict[str, list[int]]()
     for place, row in enumerate(rows):
         places.setdefault(row.get(AXIS) or f" {place}", []).append(place)
-    return [_once(rows, numbers, lost) for numbers in places.values()]
+    return [_once(rows, numbers, faults_by_axis) for numbers in places.values()]
 
 
 def _once(rows: Sequence[Cells], places: Sequence[int], lost: Mapping[int, Sequence[CellFault]]) -> TableAxis:
@@ -150,8 +150,8 @@ def _wrong(cell: Any, column: InputColumn) -> tuple[Sentence, str] | None:
     if (column.by_size and not column.is_list) or column.kind == "points":  # the models judge these values
         return None
     kind, template, code = RIGHT.get(column.kind, NUMBER)
-    wanted: Any = list[kind | None] if column.is_list else kind  # type: ignore[valid-type]
-    if cell is None or _is(cell, wanted):
+    type_: Any = list[kind | None] if column.is_list else kind  # type: ignore[valid-type]
+    if cell is None or _is(cell, type_):
         return None
     if not column.is_list:
         return _sentence_of(template, cell), code

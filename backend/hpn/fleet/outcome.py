@@ -94,7 +94,7 @@ def outcome(
         if with_candidates:
             candidates.add(evaluation, places)
     faults = [placed(fault) for fault in _all_faults(batch, is_sound, catalogue)]
-    tables = {"answers": answers.table(axis, faults), "rejected": _rejected(axis, faults)}
+    tables = {"answers": answers.table(axis, faults), "rejected": _fault_table(axis, faults)}
     return tables | ({"candidates": candidates.table(axis)} if with_candidates else {})
 
 
@@ -188,7 +188,7 @@ def _finite(values: FloatArray) -> pa.Array:
 # --- Faults -----------------------------------------------------------------------------------------------------------
 
 
-def _rejected(axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
+def _fault_table(axis: pa.ChunkedArray, faults: Sequence[CellFault]) -> pa.Table:
     """Table with a row for each fault."""
     rows = pa.array([fault.row for fault in faults], pa.int64())
     reasons = [(fault.column, fault.code, fault.reason.text) for fault in faults]

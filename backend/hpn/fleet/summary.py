@@ -43,13 +43,13 @@ def summary_of(answers: Iterable[pa.RecordBatch]) -> AxisCounts:
         axes += batch.num_rows
         rejected += batch["suitable"].null_count
         unsuitable += pc.sum(pc.equal(batch["suitable"], 0)).as_py() or 0
-        gears.update(_counted(batch["selected"]))
-        checks.update(_counted(batch["governing_check"]))
+        gears.update(_counts(batch["selected"]))
+        checks.update(_counts(batch["governing_check"]))
         bins += _in_bins(batch["utilisation"])
     return AxisCounts(axes, rejected, unsuitable, _ordered(gears), _ordered(checks), tuple(bins.tolist()))
 
 
-def _counted(names: pa.Array) -> dict[str, int]:
+def _counts(names: pa.Array) -> dict[str, int]:
     return {entry["values"]: entry["counts"] for entry in pc.value_counts(names.drop_null()).to_pylist()}
 
 

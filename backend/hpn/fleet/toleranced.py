@@ -30,9 +30,9 @@ def have_tolerances(rows: pa.Table) -> BoolArray:
     return mask
 
 
-def over_tolerances(rows: pa.Table, wanted: BoolArray, catalogue: Catalogue) -> Iterator[tuple[Evaluation, IntArray]]:
+def over_tolerances(rows: pa.Table, chosen: BoolArray, catalogue: Catalogue) -> Iterator[tuple[Evaluation, IntArray]]:
     """Evaluations of axes with their worst cases, and the axes' places; an axis with a fault is left out."""
-    places = np.flatnonzero(wanted).tolist()
+    places = np.flatnonzero(chosen).tolist()
     for start in range(0, len(places), READ_AT_ONCE):
         groups: dict[GearList, list[tuple[int, Application, Application]]] = defaultdict(list)
         for place, cells in cells_of(rows, places[start : start + READ_AT_ONCE]):

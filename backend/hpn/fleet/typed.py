@@ -82,9 +82,9 @@ class TypedTable(AxisTable):
 
     def type_of(self, name: str) -> pa.DataType:
         """Arrow type of a column in the rows; a column that may be by size keeps its own kind, numbers or texts."""
-        wanted = super().type_of(name)
+        declared = super().type_of(name)
         if name == AXIS or not self.columns[name].by_size or is_text(plain_type(self.schema.field(name).type)):
-            return wanted
+            return declared
         return pa.float64()
 
     def wrong_type(self, name: str) -> str:
@@ -93,12 +93,12 @@ class TypedTable(AxisTable):
         type = self.schema.field(name).type
         if name == AXIS:
             is_right = is_text(self.axis_type) or kinds.is_integer(self.axis_type)
-            wanted = "text, integers or UUIDs"
+            words = "text, integers or UUIDs"
         else:
             column = self.columns[name]
             is_right = column.takes(type, self.type_of(name))
-            wanted = _words(column, self.type_of(name))
-        return "" if is_right else f"column {name} is {type!s:.80}, where {wanted} belong"
+            words = _words(column, self.type_of(name))
+        return "" if is_right else f"column {name} is {type!s:.80}, where {words} belong"
 
     def batch(self, rows: pa.RecordBatch) -> RowBatch:
         """Rows in their Arrow types, with the faults of axes that are not whole."""
@@ -112,9 +112,9 @@ class TypedTable(AxisTable):
         return RowBatch(pa.Table.from_arrays(columns, names=list(self.names)), faults)
 
 
-def _words(column: InputColumn, wanted: pa.DataType) -> str:
+def _words(column: InputColumn, type: pa.DataType) -> str:
     item = "texts" if column.kind in TEXTS else "numbers, or objects by size in JSON," if column.by_size else "numbers"
-    return f"lists of {item}" if is_list(wanted) else item
+    return f"lists of {item}" if is_list(type) else item
 
 
 def _plain(column: pa.Array) -> pa.Array:
@@ -134,14 +134,14 @@ def _plain(column: pa.Array) -> pa.Array:
     return column.cast(pa.string()) if kinds.is_string_view(type) else column
 
 
-def _cast(column: pa.Array, wanted: pa.DataType) -> pa.Array:
+def _cast(column: pa.Array, target: pa.DataType) -> pa.Array:
     """Column in a type; decimals by their digits, since Arrow's own cast misses the last bit in one of eight."""
     type = column.type
     if is_list(type) and kinds.is_decimal(type.value_type):
         column = column.cast(pa.list_(pa.string()))
-    elif kinds.is_decimal(type) and kinds.is_floating(wanted):
+    elif kinds.is_decimal(type) and kinds.is_floating(target):
         column = column.cast(pa.string())
-    return column if column.type.equals(wanted) else column.cast(wanted, safe=False)
+    return column if column.type.equals(target) else column.cast(target, safe=False)
 
 
 def _may_be_whole(type: pa.DataType) -> bool:
@@ -169,12 +169,12 @@ class ParquetTable(TypedTable):
         return self._file.schema_arrow
 
     def _batches(self) -> Iterator[RowBatch]:
-        done, total = 0, self._file.metadata.num_rows
+        count, total = 0, self._file.metadata.num_rows
         for group in range(self._file.num_row_groups):
             with self.readable(f"row group {group + 1} "):
                 for rows in self._file.iter_batches(self.batch_rows, [group], list(self.names)):
-                    done += rows.num_rows
-                    self.progress = Progress(done, total, "rows")
+                    count += rows.num_rows
+                    self.progress = Progress(count, total, "rows")
                     rows.validate(full=True)  # Arrow takes any bytes as text, UTF-8 or not
                     yield self.batch(rows)
 

@@ -43,7 +43,7 @@ WITHOUT_UUIDS = (".csv",)
 """Formats in which a UUID is text."""
 
 
-def _typed(table: pa.Table, schema: pa.Schema) -> pa.Table:
+def _with_types(table: pa.Table, schema: pa.Schema) -> pa.Table:
     """Table with the types of a schema, with UUIDs from their texts."""
     place = schema.get_field_index(AXIS)
     if not is_uuid(schema.field(place).type):
@@ -112,7 +112,7 @@ class Outcomes:
         schema, seen = columns_of(kind, axis), set[Any]()
         for answers, table in zip(self._read("answers"), self._read(kind), strict=True):
             whole = _whole(kind, table, answers, torn, seen) if torn else table
-            yield _typed(whole.select(schema.names), schema)
+            yield _with_types(whole.select(schema.names), schema)
 
     def answers(self, torn: frozenset[Any]) -> Iterator[pa.Table]:
         """Answers, with the reasons of rejected axes; names of axes are text."""

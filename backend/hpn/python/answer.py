@@ -16,7 +16,7 @@ from hpn.python import html
 from hpn.python.faults import with_application_errors
 from hpn.python.gears import Gears
 
-SHOWN = 10
+ROWS = 10
 """Most candidates that a notebook shows."""
 
 
@@ -102,9 +102,9 @@ class Answer:
         gears = [(one.designation, one.status, _percent(one.utilisation), one.reason) for one in self.candidates]
         heads = ("check", "demand", "limit", "unit", "utilisation", "status")
         return html.table(self._verdict, heads, checks) + html.table(
-            f"{min(SHOWN, len(gears))} of {len(gears)} gears considered",
+            f"{min(ROWS, len(gears))} of {len(gears)} gears considered",
             ("gear", "status", "utilisation", "reason"),
-            gears[:SHOWN],
+            gears[:ROWS],
         )
 
 

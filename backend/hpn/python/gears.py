@@ -14,7 +14,7 @@ from hpn.python import html
 from hpn.python.faults import with_application_errors
 from hpn.web.settings import Settings
 
-SHOWN = {
+COLUMNS = {
     "ratio": "i",
     "rated_torque_Nm": "T_N in Nm",
     "repeated_peak_torque_Nm": "T_R in Nm",
@@ -76,8 +76,8 @@ class Gears:
         return f"<hpn.Gears: {len(self)} gears, catalogue {self.version}>"
 
     def _repr_html_(self) -> str:
-        rows = [(gear.designation, *(getattr(gear, name) for name in SHOWN)) for gear in self]
-        return html.table(f"{len(self)} gears, catalogue {self.version}", ("gear", *SHOWN.values()), rows)
+        rows = [(gear.designation, *(getattr(gear, name) for name in COLUMNS)) for gear in self]
+        return html.table(f"{len(self)} gears, catalogue {self.version}", ("gear", *COLUMNS.values()), rows)
 
 
 @cache

@@ -42,8 +42,8 @@ def report(
         selection=answer.selection,
         link=service.rstrip("/") + answer.link,
         heading=ExportTitle(title, reference, author, revision),
-        made=datetime.now(UTC),
+        moment=datetime.now(UTC),
         catalogue=answer.gears.catalogue,
         chosen=answer.candidate(gear).designation if gear else "",
     )
-    return FORMATS[format].made(export, Reader(language, digits=DIGITS))
+    return FORMATS[format].content(export, Reader(language, digits=DIGITS))

@@ -70,7 +70,7 @@ async def change(
     Raises ExcessError beyond the limits, and KeyReusedError and KeySpentError as `take`; the same key returns the same
     numbers as before.
     """
-    machine = await _locked(connection, id)
+    machine = await _lock_row(connection, id)
     if machine is None:
         return None
     if once is not None and (before := await take(connection, once.key, once.digest, id)) is not None:
@@ -99,7 +99,7 @@ async def change(
     return numbers
 
 
-async def _locked(connection: AsyncConnection, id: str) -> Any:
+async def _lock_row(connection: AsyncConnection, id: str) -> Any:
     """Row of the document, locked against other transactions until this one ends."""
     c = documents.c
     columns = (c.version, c.axis_order, c.numbers, c.revisions, c.saved)
@@ -117,14 +117,14 @@ async def _as_seen(connection: AsyncConnection, id: str, change: Change) -> bool
     query = select(c.number, c.version, c.removed).where(c.document == id)
     if len(seen) + len(change.restored) < 100:
         query = query.where(c.number.in_([*seen, *(number for number, _ in change.restored)]))
-    there, gone = {}, set()
+    there, removed_numbers = {}, set()
     for number, version, removed in await connection.execute(query):
         if removed is None:
             there[number] = version
         else:
-            gone.add(number)
+            removed_numbers.add(number)
     return all(there.get(number) == version for number, version in seen.items()) and all(
-        number in gone for number, _ in change.restored
+        number in removed_numbers for number, _ in change.restored
     )
 
 
@@ -184,7 +184,7 @@ async def freeze(
 
     Raises LabelTakenError, ExcessError, and as `take`.
     """
-    machine = await _locked(connection, id)
+    machine = await _lock_row(connection, id)
     if machine is None:
         return None
     if once is not None and (before := await take(connection, once.key, once.digest, id)) is not None:

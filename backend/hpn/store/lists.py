@@ -86,14 +86,14 @@ class LineFilter:
 
 
 async def read_lines(
-    connection: AsyncConnection, record: type[T], wanted: LineFilter, cursor: str | None, limit: int
+    connection: AsyncConnection, record: type[T], filter: LineFilter, cursor: str | None, limit: int
 ) -> tuple[list[T], str | None]:
     """Saved documents as records of a type, and a cursor to the next part; ValueError for an invalid cursor."""
-    name, is_falling = wanted.sort.lstrip("-"), wanted.sort.startswith("-")
+    name, is_falling = filter.sort.lstrip("-"), filter.sort.startswith("-")
     key, c = _key(name), documents.c
     columns = [c[field.name] for field in fields(record)]
     order = (key.desc(), c.id.desc()) if is_falling else (key, c.id)
-    query = select(*columns, key).where(*wanted.conditions()).order_by(*order).limit(limit + 1)
+    query = select(*columns, key).where(*filter.conditions()).order_by(*order).limit(limit + 1)
     if cursor is not None:
         last = _position(cursor, name)
         query = query.where(tuple_(key, c.id) < tuple_(*last) if is_falling else tuple_(key, c.id) > tuple_(*last))
@@ -104,13 +104,13 @@ async def read_lines(
 
 async def read_machine_lines(
     connection: AsyncConnection,
-    wanted: LineFilter,
+    filter: LineFilter,
     filters: Mapping[str, LineFilter],
     cursor: str | None,
     limit: int,
 ) -> MachineList:
     """Machines as their page lists them, and the number of machines of each filter; ValueError as `read_lines`."""
-    lines, following = await read_lines(connection, MachineLine, wanted, cursor, limit)
+    lines, following = await read_lines(connection, MachineLine, filter, cursor, limit)
     c = documents.c
     governing = select(c.id, *AXIS).join(axes, (axes.c.document == c.id) & (axes.c.number == c.governing_axis))
     rows = await connection.execute(governing.where(c.id.in_([line.id for line in lines])))

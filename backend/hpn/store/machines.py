@@ -121,11 +121,11 @@ async def read_machine(
 
 
 async def read_axes(
-    connection: AsyncConnection, id: str, numbers: Sequence[int] | None = None, *, removed: bool = False
+    connection: AsyncConnection, id: str, numbers: Sequence[int] | None = None, *, with_removed: bool = False
 ) -> dict[int, SavedAxis]:
     """Axes of a document by their numbers: all present ones, or those with given numbers; or the removed ones."""
     c = axes.c
-    query = select(*AXIS).where(c.document == id, c.removed.is_not(None) if removed else c.removed.is_(None))
+    query = select(*AXIS).where(c.document == id, c.removed.is_not(None) if with_removed else c.removed.is_(None))
     if numbers is not None:
         query = query.where(c.number.in_(numbers))
     return {(axis := axis_in(row)).number: axis for row in await connection.execute(query)}

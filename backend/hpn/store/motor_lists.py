@@ -78,8 +78,8 @@ async def replace_list(connection: AsyncConnection, id: str, draft: MotorListDra
 
 async def remove_list(connection: AsyncConnection, id: str, version: int | None) -> bool:
     """Delete a list; False as `replace_list`. Applications keep the figures of its motors: they are copies."""
-    gone = delete(motor_lists).where(*_in_version(id, version)).returning(motor_lists.c.id)
-    return (await connection.execute(gone)).one_or_none() is not None
+    query = delete(motor_lists).where(*_in_version(id, version)).returning(motor_lists.c.id)
+    return (await connection.execute(query)).one_or_none() is not None
 
 
 async def read_list(connection: AsyncConnection, id: str) -> SavedMotorList | None:

@@ -165,9 +165,9 @@ class Store(Transactions):
         if not ID.fullmatch(id) or not (label is None or LABEL.fullmatch(label)):
             return None
         c, r = documents.c, revisions.c
-        wanted = r.number == c.revisions if label is None else r.label_key == label.casefold()
+        is_revision = r.number == c.revisions if label is None else r.label_key == label.casefold()
         query = select(*SUMMARY, c.owner, r.number, r.content_packed, r.result_packed)
-        query = query.join_from(documents, revisions, (r.document == c.id) & wanted)
+        query = query.join_from(documents, revisions, (r.document == c.id) & is_revision)
         async with self._reading() as connection:
             row = (await connection.execute(query.where(c.id == id, c.kind == "selection"))).one_or_none()
             lines = () if row is None else tuple(await read_revisions(connection, id))
@@ -201,7 +201,7 @@ class Store(Transactions):
         search: str | None = None,
         cursor: str | None = None,
         limit: int = 50,
-        wanted: LineFilter | None = None,
+        filter: LineFilter | None = None,
     ) -> Page:
         """Saved selections, newest first: all, those with a reference, those with every word of a search, or those of a
         filter.
@@ -209,9 +209,9 @@ class Store(Transactions):
         Words are found in title, reference, author, gear and ordering code, in any case. Raises ValueError for an
         invalid cursor.
         """
-        wanted = wanted or LineFilter("selection", search, reference)
+        filter = filter or LineFilter("selection", search, reference)
         async with self._reading() as connection:
-            return Page(*await read_lines(connection, SelectionLine, wanted, cursor, limit))
+            return Page(*await read_lines(connection, SelectionLine, filter, cursor, limit))
 
     # --- Documents ----------------------------------------------------------------------------------------------------
 
@@ -271,7 +271,7 @@ class Store(Transactions):
     async def removed_axis(self, id: str, number: int) -> SavedAxis | None:
         """Axis that was removed from a document, or None."""
         async with self._reading() as connection:
-            return (await read_axes(connection, id, [number], removed=True)).get(number)
+            return (await read_axes(connection, id, [number], with_removed=True)).get(number)
 
     async def add_machine(self, draft: MachineDraft, once: Once | None = None) -> str:
         """Id of a new saved machine, or of the one that the same idempotency key has saved before; raises as `save`."""
@@ -317,18 +317,18 @@ class Store(Transactions):
             return await read_contents(connection, id, most)
 
     async def machines(
-        self, cursor: str | None = None, limit: int = 50, wanted: LineFilter | None = None
+        self, cursor: str | None = None, limit: int = 50, filter: LineFilter | None = None
     ) -> tuple[list[DocumentLine], str | None]:
         """Saved machines, newest first, and a cursor to the next part; ValueError for an invalid cursor."""
         async with self._reading() as connection:
-            return await read_lines(connection, DocumentLine, wanted or LineFilter(), cursor, limit)
+            return await read_lines(connection, DocumentLine, filter or LineFilter(), cursor, limit)
 
     async def machine_list(
-        self, cursor: str | None, limit: int, wanted: LineFilter, filters: Mapping[str, LineFilter]
+        self, cursor: str | None, limit: int, filter: LineFilter, filters: Mapping[str, LineFilter]
     ) -> MachineList:
         """Saved machines with the figures of their page, and the numbers of machines of other filters."""
         async with self._reading() as connection:
-            return await read_machine_lines(connection, wanted, filters, cursor, limit)
+            return await read_machine_lines(connection, filter, filters, cursor, limit)
 
     async def deleted(self, since: datetime, kind: DocumentKind | None) -> list[tuple[str, datetime]]:
         """Ids and moments of saved documents deleted since a moment, at most a year ago; the latest last."""

@@ -187,9 +187,9 @@ async def settle_machine(connection: AsyncConnection, id: str, versions: Version
     """Count the axes of a machine with another verdict; False, and no count kept, while some have not been asked."""
     c = documents.c
     await connection.execute(select(c.id).where(c.id == id).with_for_update())
-    left = select(func.count()).select_from(axes).where(_axes_of(id), _unasked(versions))
+    remaining = select(func.count()).select_from(axes).where(_axes_of(id), _unasked(versions))
     values: dict[str, Any] = {"today_taken": None}
-    is_whole = (await connection.execute(left)).scalar_one() == 0
+    is_whole = (await connection.execute(remaining)).scalar_one() == 0
     if is_whole:
         of_others = or_(axes.c.engine_version != versions.engine, axes.c.catalogue_version != versions.catalogue)
         query = select(axes.c.number).where(_axes_of(id), of_others, axes.c.today_changed.is_(True))

@@ -38,7 +38,7 @@ async def insert(connection: AsyncConnection, draft: Draft) -> str:
     now = datetime.now(UTC)
     if await insert_new(connection, documents, _selection_row(draft, now)):
         await insert_axes(connection, draft.id, [(1, axis)], now, draft.owner)
-        await insert_revision(connection, draft.id, 1, _frozen(draft), now)
+        await insert_revision(connection, draft.id, 1, _first_revision(draft), now)
     return draft.id
 
 
@@ -63,7 +63,7 @@ def _selection_row(draft: Draft, now: datetime) -> Row:
     }
 
 
-def _frozen(draft: Draft) -> RevisionDraft:
+def _first_revision(draft: Draft) -> RevisionDraft:
     """First revision of a selection: its page and its files show it from then on."""
     own, answer = msgspec.Raw(draft.application), draft.columns
     lists = {name: msgspec.Raw(answer[name].encode()) for name in LISTS}
@@ -224,8 +224,8 @@ async def remove(
     """Delete a document with its axes and revisions, list the deletion, and mark its idempotency keys as spent; False
     as `rename`."""
     c, now = documents.c, datetime.now(UTC)
-    gone = delete(documents).where(*in_version(id, version, kind)).returning(c.kind, c.saved)
-    row = (await connection.execute(gone)).one_or_none()
+    query = delete(documents).where(*in_version(id, version, kind)).returning(c.kind, c.saved)
+    row = (await connection.execute(query)).one_or_none()
     if row is None:
         return False
     await spend(connection, id, now)

@@ -39,7 +39,7 @@ def answers_of(texts: Sequence[str]) -> Answers:
 T = TypeVar("T")
 
 
-def answered(
+def reading_by_answers(
     texts: Sequence[str], inputs: Inputs, read: Callable[[Choices], T], columns_of: Callable[[T], Sequence[Column]]
 ) -> tuple[T, tuple[Sentence, ...]]:
     """A reading by a program's answers, and their faults; answers about columns need a first reading."""

@@ -98,8 +98,8 @@ def _with_axes(body: TableBody, columns: Sequence[Column]) -> TableBody:
     numbered = [row for row in body.totals if any(is_number(row.cells[place]) for place in moving)]
     numbers = {row.number for row in (*named, *numbered)}
     notes = tuple(note for note in body.notes if note.values.get("row") not in numbers)
-    left = [row for row in body.totals if row.number not in numbers and row.number not in body.numbers]
-    return replace(body.including([*named, *numbered]), notes=(*notes, *(skipped(*row[::2]) for row in left)))
+    other_totals = [row for row in body.totals if row.number not in numbers and row.number not in body.numbers]
+    return replace(body.including([*named, *numbered]), notes=(*notes, *(skipped(*row[::2]) for row in other_totals)))
 
 
 _Place = tuple[int, str]
@@ -271,7 +271,7 @@ class _AxesInterpreter(Interpreter):
             values[_STOP] = float(stop)
         numbers = dict(zip((column.place for column in self.used), zip(*group.rows, strict=True), strict=True))
         for column in self.columns:
-            if column.held is None or column.role == AXIS:
+            if column.input is None or column.role == AXIS:
                 continue
             cells = [row[column.place] for row in group.cells]
             values_read = numbers.get(column.place, (None,) * len(cells))
@@ -282,9 +282,9 @@ class _AxesInterpreter(Interpreter):
                 if loads == "axis" and column.role in _OF_AXIS and _stands_first(cells):
                     values[_OF_AXIS[column.role][1]] = listed[0]
                 elif column.role in REQUIRED or any(value is not None for value in listed):
-                    values[column.held.place] = listed
+                    values[column.input.place] = listed
             elif (value := self._one(dict(zip(cells, values_read, strict=True)), column)) is not None:
-                values[column.held.place] = value
+                values[column.input.place] = value
         return self._lasting(values, group, times)
 
     def _number(self, cell: str, number: CellNumber | None, column: Column) -> float | str | None:
@@ -298,7 +298,7 @@ class _AxesInterpreter(Interpreter):
 
     def _by_size(self, cell: str, column: Column) -> dict[str, float] | None:
         """Numbers by size of a cell in the unit of the wire; None if it has none, or if its column takes none."""
-        if column.held is None or column.held.kind != "by_size":
+        if column.input is None or column.input.kind != "by_size":
             return None
         marks: Sequence[Decimal] = DECIMALS if not cell.lstrip().startswith("{") else (".",)
         readings = [reading for mark in marks if (reading := numbers_by_size(cell, partial(self._float, column, mark)))]
@@ -310,11 +310,11 @@ class _AxesInterpreter(Interpreter):
     def _one(self, numbers: dict[str, CellNumber | None], column: Column) -> Any:
         """Common value of the rows of an axis; if they differ, their cells as written, which is no valid input."""
         cells = [cell for cell in numbers if not is_blank(cell)]
-        if not cells or column.held is None:
+        if not cells or column.input is None:
             return None
-        many = column.held.many
+        many = column.input.many
         if many:
-            values: list[Any] = [_listed(cell, column.held.kind == "text", self.decimal or ".") for cell in cells]
+            values: list[Any] = [_values_of(cell, column.input.kind == "text", self.decimal or ".") for cell in cells]
         else:
             values = [self._by_size(cell, column) or self._number(cell, numbers[cell], column) for cell in cells]
         if all(value == values[0] for value in values):
@@ -353,7 +353,7 @@ def _stands_first(cells: Sequence[str]) -> bool:
     return len(cells) > 1 and not is_blank(cells[0]) and all(map(is_blank, cells[1:]))
 
 
-def _listed(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:
+def _values_of(cell: str, texts: bool, decimal: Decimal) -> list[float | str]:
     """Several ratios or sizes in a cell. A comma between digits is a decimal mark, although no ratio has decimals."""
     if len(cell) > LONGEST_CELL:
         return [str(cell)]

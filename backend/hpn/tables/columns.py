@@ -88,7 +88,7 @@ class Column:
     skipped: Sentence | None = None
     text: bool = False
     doubled: bool = False
-    held: Input | None = None
+    input: Input | None = None
     foreign: str = ""
     of_motor: bool = False
     likely: str = ""
@@ -106,12 +106,12 @@ class Column:
     @property
     def quantity(self) -> str:
         """Quantity that its unit measures, blank without a choice of units."""
-        return self.held.quantity if self.held else ""
+        return self.input.quantity if self.input else ""
 
     @property
     def is_number(self) -> bool:
         """True where its cells hold one number each."""
-        return self.held is not None and self.held.is_number
+        return self.input is not None and self.input.is_number
 
     @property
     def numbers_phases(self) -> bool:
@@ -208,7 +208,8 @@ def settled(
         columns = [_on_side(column, choices.side, present) for column in columns]
     roles = [column.role for column in columns if column.role not in ("", SKIP)]
     fitting = [
-        _answered(replace(column, doubled=roles.count(column.role) > 1), inputs.by_role, choices) for column in columns
+        _with_answer(replace(column, doubled=roles.count(column.role) > 1), inputs.by_role, choices)
+        for column in columns
     ]
     known = (assumed if column.role or not inputs.has_motors else () for column in columns)
     return tuple(_with_unit(column, body, inputs, choices, own) for column, own in zip(fitting, known, strict=True))
@@ -222,14 +223,14 @@ SIDES: Mapping[str, str] = {
 
 def _on_side(column: Column, side: str, roles: Collection[str]) -> Column:
     """A column named after the motor, by the answer which shaft its values belong to; other columns already have
-    `held`.
+    `input`.
     """
     if not column.likely or (side == "output" and column.likely in roles):
         return column
     return replace(column, role=column.likely if side == "output" else SKIP, skipped=MOTOR if side == "motor" else None)
 
 
-def _answered(column: Column, roles: Collection[str], choices: Choices) -> Column:
+def _with_answer(column: Column, roles: Collection[str], choices: Choices) -> Column:
     if column.doubled:
         column = replace(column, role="")
     role = choices.roles.get(column.place, "")
@@ -246,7 +247,7 @@ def _with_unit(column: Column, body: TableBody, inputs: Inputs, choices: Choices
     if input_ is None:
         return column
     headings = body.headings[column.place]
-    column = replace(column, held=input_, unit=input_.unit)
+    column = replace(column, input=input_, unit=input_.unit)
     if not column.quantity:
         return replace(column, foreign=_foreign_unit(headings, input_))
     inside = units_in(body, column.place, any_unit=inputs.has_axes)

@@ -174,7 +174,7 @@ class _CycleInterpreter(Interpreter):
             roles = {column.role for column, cell in zip(self.used, row, strict=True) if cell is not None}
             if roles == {"t"} and any(map(is_pause, cells)):
                 self.rows[k] = tuple(
-                    CellNumber("0", column.held.unit if column.held and column.unit == CELLS else "")
+                    CellNumber("0", column.input.unit if column.input and column.unit == CELLS else "")
                     if column.role in ("T", "n")
                     else cell
                     for column, cell in zip(self.used, row, strict=True)
@@ -227,8 +227,8 @@ class _CycleInterpreter(Interpreter):
 
     def require_numbers(self, rows_by_mark: Mapping[Decimal, Sequence[Row]]) -> None:
         """Raise RefusedError unless all used cells are numbers by one decimal mark."""
-        wanted = sum(not is_blank(row[column.place]) for row in self.body.rows for column in self.used)
-        if any(sum(cell is not None for row in rows for cell in row) == wanted for rows in rows_by_mark.values()):
+        count = sum(not is_blank(row[column.place]) for row in self.body.rows for column in self.used)
+        if any(sum(cell is not None for row in rows for cell in row) == count for rows in rows_by_mark.values()):
             return
         for number, row in zip(self.body.numbers, self.body.rows, strict=True):
             for column in self.used:

@@ -61,10 +61,10 @@ class Contents:
     problem: Sentence | None = None
 
 
-def contents_of(content: bytes | str, wanted: TableBounds) -> Contents:
+def contents_of(content: bytes | str, bounds: TableBounds) -> Contents:
     """Contents of a file or a text; raises nothing but MemoryError, `problem` tells why it can't be read."""
     if isinstance(content, str):
-        return _of_text(content, wanted)
+        return _of_text(content, bounds)
     try:
         if content.startswith(OLD_MAGIC):
             raise RefusedError(OLD_WORKBOOK)
@@ -76,52 +76,52 @@ def contents_of(content: bytes | str, wanted: TableBounds) -> Contents:
 
             readers = {PARQUET: records.parquet, ARROW: records.arrow, STREAM: records.arrow_stream}
             reader = next(reader for mark, reader in readers.items() if content.startswith(mark))
-            suffix, grid = reader(content, wanted.takes)
+            suffix, grid = reader(content, bounds.takes)
             return Contents({"": (grid,)}) if grid else Contents(suffix=suffix)
         if content.startswith(GZIP):
-            return _of_gzip(content, wanted)
+            return _of_gzip(content, bounds)
         text = tidied(text_of(content))
     except (RefusedError, ExtraMissingError) as refused:
         return Contents(problem=refused.sentence)
-    return _of_text(text, wanted)
+    return _of_text(text, bounds)
 
 
-def _of_gzip(content: bytes, wanted: TableBounds) -> Contents:
+def _of_gzip(content: bytes, bounds: TableBounds) -> Contents:
     """Contents of a CSV file in gzip, unpacked only up to the longest text of a table; a table that is taken unread is
     recognised by its first lines.
     """
     try:
-        unpacked = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(content, 4 * wanted.most_characters + 4)
+        unpacked = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(content, 4 * bounds.most_characters + 4)
     except zlib.error:
         raise RefusedError(NO_TEXT) from None
-    contents = _of_text(tidied(text_of(unpacked)), wanted)
+    contents = _of_text(tidied(text_of(unpacked)), bounds)
     return replace(contents, suffix=".csv.gz") if contents.suffix else contents
 
 
-def _of_text(text: str, wanted: TableBounds) -> Contents:
+def _of_text(text: str, bounds: TableBounds) -> Contents:
     try:
         if not text.lstrip().startswith("{"):
-            if wanted.takes is None and (phases := _phases(text, wanted)):
+            if bounds.takes is None and (phases := _phases(text, bounds)):
                 return Contents({"": (phases,)}, text)
-            if wanted.takes and _is_taken_csv(text, wanted.takes):
+            if bounds.takes and _is_taken_csv(text, bounds.takes):
                 return Contents(suffix=".csv")
-            return Contents({"": tuple(grids_of(text, wanted.most_rows, wanted.most_characters))}, text)
-        if wanted.takes is None:
+            return Contents({"": tuple(grids_of(text, bounds.most_rows, bounds.most_characters))}, text)
+        if bounds.takes is None:
             return Contents(text=text, is_application=True)
         raise RefusedError(LINES)
     except RefusedError as refused:
-        return Contents(text=text if len(text) <= wanted.most_characters else "", problem=refused.sentence)
+        return Contents(text=text if len(text) <= bounds.most_characters else "", problem=refused.sentence)
 
 
-def _phases(text: str, wanted: TableBounds) -> Grid | None:
+def _phases(text: str, bounds: TableBounds) -> Grid | None:
     """Table of phases from a JSON list of objects with plain values; None for any other text."""
-    if not text.lstrip().startswith("[") or len(text) > wanted.most_characters:
+    if not text.lstrip().startswith("[") or len(text) > bounds.most_characters:
         return None
     try:
         listed = json.loads(text, parse_float=_figure, parse_int=_figure)
     except (ValueError, RecursionError):
         return None
-    if not all(isinstance(each, dict) for each in listed) or not 0 < len(listed) <= wanted.most_rows:
+    if not all(isinstance(each, dict) for each in listed) or not 0 < len(listed) <= bounds.most_rows:
         return None
     names = list(dict.fromkeys(name for each in listed for name in each))
     values = [each.get(name) for each in listed for name in names] if len(names) <= MOST_COLUMNS else [()]
@@ -137,12 +137,12 @@ def _figure(number: str) -> str:
 
 def _sheets(content: bytes) -> dict[str, tuple[Grid, ...] | Sentence]:
     contents = dict[str, tuple[Grid, ...] | Sentence]()
-    left = MOST_CELLS_IN_ALL
+    room = MOST_CELLS_IN_ALL
     for name, sheet in sheets_of(content).items():
         try:
             grid = sheet.grid()
-            left -= len(grid.rows) * grid.width
-            contents[name] = (grid,) if left >= 0 else too_many_cells().sentence
+            room -= len(grid.rows) * grid.width
+            contents[name] = (grid,) if room >= 0 else too_many_cells().sentence
         except RefusedError as refused:
             contents[name] = refused.sentence
     return contents
@@ -219,10 +219,10 @@ def packed(content: bytes) -> str:
     return base64.b64encode(zlib.compress(content)).decode()
 
 
-def unpacked(carried: bytes) -> bytes:
+def unpacked(packed: bytes) -> bytes:
     """The file of such a hidden field; empty for an invalid field."""
     with suppress(ValueError, zlib.error):
         unpacking = zlib.decompressobj()
-        content = unpacking.decompress(base64.b64decode(carried, validate=True), MOST_CARRIED)
+        content = unpacking.decompress(base64.b64decode(packed, validate=True), MOST_CARRIED)
         return content if unpacking.eof else b""
     return b""

@@ -124,10 +124,10 @@ def head_of(grid: Grid, *, named_in: Names | None = None) -> Head:
     else:
         end = 0
         while end < len(grid.rows) and numbers_in(row := grid.rows[end]) < min(
-            2, max(_filled(row) - named_rows, named_rows)
+            2, max(_filled_cells(row) - named_rows, named_rows)
         ):
             end += 1
-        several = [k for k in range(end) if _filled(grid.rows[k]) >= min(2, grid.width - 1)]
+        several = [k for k in range(end) if _filled_cells(grid.rows[k]) >= min(2, grid.width - 1)]
         if named_rows:  # a row whose only number is beside a name has other cells that can't be read
             several = [k for k in several if not numbers_in(grid.rows[k])]
         last = bottom = several[-1] if several else -1
@@ -168,7 +168,7 @@ def numbers_in(row: Sequence[str]) -> int:
     return sum(is_meant_as_number(cell) for cell in row)
 
 
-def _filled(row: Sequence[str]) -> int:
+def _filled_cells(row: Sequence[str]) -> int:
     return sum(map(bool, row))
 
 

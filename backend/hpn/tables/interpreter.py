@@ -148,14 +148,14 @@ class Interpreter:
     def _preview(self, cell: str, column: Column) -> PreviewCell:
         text = str(cell[:LONGEST_CELL])
         if not column.is_number or is_blank(cell):
-            return PreviewCell(text, kind="text" if column.held else "unread")
+            return PreviewCell(text, kind="text" if column.input else "unread")
         marks = (self.decimal,) if self.decimal else DECIMALS
         numbers = {entry(cell, mark, any_unit=True) for mark in marks} - {None}
         number = numbers.pop() if len(numbers) == 1 else None
         if number is None:
             return PreviewCell(text, kind="asked")
-        if column.held and (wire := in_wire(number, column)):
-            return PreviewCell(wire, column.held.unit, "number", text)
+        if column.input and (wire := in_wire(number, column)):
+            return PreviewCell(wire, column.input.unit, "number", text)
         return PreviewCell(*number, "number")
 
     # --- Columns ------------------------------------------------------------------------------------------------------
@@ -386,11 +386,11 @@ def in_wire(number: CellNumber, column: Column, code_of: Callable[[CellNumber, C
     """A number in the unit of the wire, in plain notation; blank if its unit does not fit the column."""
     if number.unit == PERCENT:
         return str(decimals.Decimal(number.number).scaleb(-2)) if column.role in SHARES else ""
-    if column.held is None or not column.quantity:
+    if column.input is None or not column.quantity:
         return "" if number.unit else number.number
     if not (code := code_of(number, column)):
         return ""
-    measure = units.entered(column.held.unit, code)
+    measure = units.entered(column.input.unit, code)
     value = inf if measure.same else measure.wire(number.number)
     return written(value) if isfinite(value) else number.number
 

@@ -144,15 +144,15 @@ def _one_unit(units: Sequence[str | None]) -> str | None:
 
 def _parted(grid: Grid, place: int, pairs: Sequence[Pair], units: Sequence[str]) -> Grid:
     """The table with its columns of torques at a speed turned into rows, below a row of headings."""
-    gone, heads = {column for _, *both in pairs for column in both}, grid.rows[place]
+    curve_columns, heads = {column for _, *both in pairs for column in both}, grid.rows[place]
     names = ("curve continuous torque", "curve peak torque")
     own = [f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
     rows, numbers = list[tuple[str, ...]](), list[int]()
     for number, row in list(zip(grid.numbers, grid.rows, strict=True))[place:]:
-        others = tuple(cell for column, cell in enumerate(row) if column not in gone)
+        others = tuple(cell for column, cell in enumerate(row) if column not in curve_columns)
         points: list[tuple[str, ...]] = [("curve speed [rpm]", *own)]
         if row is not heads:
-            cells = [row[column] for column in gone if not is_blank(row[column])]
+            cells = [row[column] for column in curve_columns if not is_blank(row[column])]
             if cells and (all(map(is_factor, cells)) or not any(map(is_number, cells))):
                 return grid  # a row of factors or units
             points = [(n, row[c], row[p]) for n, c, p in pairs if not (is_blank(row[c]) and is_blank(row[p]))]

@@ -136,8 +136,8 @@ class _MotorsInterpreter(Interpreter):
         for template, group in left_out.items():
             self._note(template, group)
         if self._has_points:
-            gone = {values["designation"] for group in left_out.values() for _, values in group}
-            rows = [row for row in rows if row[1]["designation"] not in gone]
+            designations = {values["designation"] for group in left_out.values() for _, values in group}
+            rows = [row for row in rows if row[1]["designation"] not in designations]
         return self._with_points(rows)
 
     def _values(
@@ -146,7 +146,7 @@ class _MotorsInterpreter(Interpreter):
         """Figures of a row by their places, and True where a cell is none; unknown ones leave those `above`, too."""
         values, is_wrong = dict[str, Any](), False
         for column, figure in zip(self.used, read, strict=True):
-            cell, place = cells[column.place], column.held.place if column.held else ""
+            cell, place = cells[column.place], column.input.place if column.input else ""
             if is_blank(cell):
                 if blanks == "above" and place in above and column.role not in POINTS:
                     values[place] = above[place]
@@ -168,8 +168,8 @@ class _MotorsInterpreter(Interpreter):
             self._note(PARTIAL, parts)
             return rows
         self._note(_WITH_PARTIAL, parts)
-        gone = {values["designation"] for _, values in parts}
-        return [row for row in rows if row[1]["designation"] not in gone]
+        designations = {values["designation"] for _, values in parts}
+        return [row for row in rows if row[1]["designation"] not in designations]
 
     def _with_figures(self, rows: list[_Row]) -> list[_Row]:
         """Motors with any figure."""
@@ -180,7 +180,7 @@ class _MotorsInterpreter(Interpreter):
         """Answer about parts of points, blank while the question is open."""
         number, values = parts[0]
         lacking = next(place for place in POINT if place not in values)
-        column = next((column for column in self.columns if column.held and column.held.place == lacking), None)
+        column = next((column for column in self.columns if column.input and column.input.place == lacking), None)
         named = next(each.named for each in motor_points.COLUMNS if each.place == lacking)
         template = N_("Incomplete points of a torque curve, first in row {row}: {name} is missing. What counts?")
         name = column.called if column else Sentence(named.name)
@@ -192,16 +192,16 @@ class _MotorsInterpreter(Interpreter):
             numbers = first_of([*dict.fromkeys(number for number, _ in rows)], MOST_NAMED)
             self.notes.append(Sentence(template, {"rows": numbers, "count": len(rows)}))
 
-    def _ask_cells(self, choice: Choice, template: str, wanted: float | None) -> str:
+    def _ask_cells(self, choice: Choice, template: str, speed: float | None) -> str:
         """Answer about cells that are 0 or blank in a column with other cells, too; blank without such cells."""
         for place, column in enumerate(self.used):
             cells = [row[column.place] for row in self.body.rows]
-            if all(map(is_blank, cells)) or column.role in (POINTS if wanted is None else (SPEED,)):
+            if all(map(is_blank, cells)) or column.role in (POINTS if speed is None else (SPEED,)):
                 continue
             for number, cell, row, first in zip(self.body.numbers, cells, self.rows, self._begins, strict=True):
                 figure = row[place]
                 is_zero = figure is not None and float(figure.number) == 0
-                if (first and is_blank(cell)) if wanted is None else is_zero:
+                if (first and is_blank(cell)) if speed is None else is_zero:
                     return self.choose(choice, Sentence(template, {"row": number, "name": column.called}))
         return ""
 

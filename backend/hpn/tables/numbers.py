@@ -33,7 +33,7 @@ LONGEST_TEXT = 100
 _LONGEST = 60
 """Characters of a text, such as the designation of a motor, and of a number."""
 
-_ASKED = {
+_AMBIGUOUS = {
     decimal: Pattern(rf"[+-]?[1-9][0-9]{{0,2}}[{group}][0-9]{{3}}", _LONGEST)
     for decimal, group in ((".", ","), (",", "."))
 }
@@ -126,7 +126,7 @@ class Notation:
 
     def _with_comma(self, text: str) -> str:
         """A text as a link writes it: a comma is ambiguous there, a point is not."""
-        return text.replace(".", ",") if self.decimal == "," and _ASKED[","].fullmatch(_tidy(text)) else text
+        return text.replace(".", ",") if self.decimal == "," and _AMBIGUOUS[","].fullmatch(_tidy(text)) else text
 
 
 def _without_percent(number: str | None) -> Sentence | None:
@@ -168,7 +168,7 @@ def read_decimal(text: str, decimal: str) -> str | None:
     Without a decimal mark only plain notation is read.
     """
     plain = _tidy(text)
-    if len(plain) > _LONGEST or (decimal and _ASKED[decimal].fullmatch(plain)):
+    if len(plain) > _LONGEST or (decimal and _AMBIGUOUS[decimal].fullmatch(plain)):
         return None
     if NUMBER.fullmatch(plain):
         return plain

@@ -37,13 +37,13 @@ class Reading:
 
 
 def reading_of(
-    content: bytes | str, wanted: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
+    content: bytes | str, bounds: TableBounds, choices: Choices = NO_CHOICES, assumed: Collection[str] = ()
 ) -> Reading:
     """Reading of a file or a text with the answers to its questions; raises nothing but MemoryError.
 
     A column without a unit is in one of the `assumed` units.
     """
-    contents = contents_of(content, wanted)
+    contents = contents_of(content, bounds)
     if contents.problem:
         return Reading(text=contents.text, table=Table(problem=contents.problem))
     if contents.suffix or contents.is_application:
@@ -53,18 +53,18 @@ def reading_of(
     if choices.of not in (of, ANY):
         choices = NO_CHOICES
     sheets = tuple(contents.sheets)
-    first = sheets[0] if len(sheets) == 1 or wanted.inputs.has_axes else ""
+    first = sheets[0] if len(sheets) == 1 or bounds.inputs.has_axes else ""
     sheet = choices.sheet if choices.sheet in sheets else first
-    table = _table(contents.sheets[sheet], wanted, choices, assumed) if sheet in sheets else None
+    table = _table(contents.sheets[sheet], bounds, choices, assumed) if sheet in sheets else None
     return Reading(of=of, text=contents.text, sheets=sheets, sheet=sheet, table=table)
 
 
-def _table(sheets: Sequence[Grid] | Sentence, wanted: TableBounds, choices: Choices, assumed: Collection[str]) -> Table:
+def _table(sheets: Sequence[Grid] | Sentence, bounds: TableBounds, choices: Choices, assumed: Collection[str]) -> Table:
     """The table of a sheet; for axes or motors the separator that gives most known columns."""
     if isinstance(sheets, Sentence):
         return Table(problem=sheets)
-    if wanted.inputs.has_axes:
-        read = read_motors if wanted.inputs.has_motors else read_axes
-        tables = [read(grid, wanted.inputs, choices, assumed) for grid in sheets]
+    if bounds.inputs.has_axes:
+        read = read_motors if bounds.inputs.has_motors else read_axes
+        tables = [read(grid, bounds.inputs, choices, assumed) for grid in sheets]
         return max(tables, key=lambda table: sum(bool(column.role) for column in table.columns))
     return with_outcomes(read_grids(sheets, choices, assumed), sheets, choices, assumed)

@@ -26,11 +26,11 @@ MOST_BYTES = 16 * MOST_CHARACTERS
 UNREADABLE = N_("the file can’t be read as Parquet or Arrow: save the table as CSV or XLSX")
 TOO_LONG = N_("the columns of the table take more than {most} MB: leave out those that are not needed")
 
-Found = tuple[str, Grid | None]
+SuffixAndGrid = tuple[str, Grid | None]
 """Suffix of a table that is taken unread, without cells; or blank with its cells."""
 
 
-def parquet(content: bytes, takes: Takes | None) -> Found:
+def parquet(content: bytes, takes: Takes | None) -> SuffixAndGrid:
     """A table of Parquet; raises RefusedError."""
     with _read_errors():
         file = pq.ParquetFile(pa.BufferReader(content))
@@ -42,7 +42,7 @@ def parquet(content: bytes, takes: Takes | None) -> Found:
         return "", _grid(file.read(use_threads=False))
 
 
-def arrow(content: bytes, takes: Takes | None) -> Found:
+def arrow(content: bytes, takes: Takes | None) -> SuffixAndGrid:
     """A table of Arrow; raises RefusedError."""
     with _read_errors():
         file = pa.ipc.open_file(pa.BufferReader(content))
@@ -53,7 +53,7 @@ def arrow(content: bytes, takes: Takes | None) -> Found:
         return "", _grid(file.read_all())
 
 
-def arrow_stream(content: bytes, takes: Takes | None) -> Found:
+def arrow_stream(content: bytes, takes: Takes | None) -> SuffixAndGrid:
     """A table of an Arrow stream; raises RefusedError."""
     with _read_errors(), pa.ipc.open_stream(pa.BufferReader(content)) as stream:
         if _is_taken(stream.schema, takes):

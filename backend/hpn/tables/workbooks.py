@@ -149,7 +149,7 @@ def _sheet(sheet: "Worksheet", room: CellBudget) -> Sheet:
         last = max(number, last + 1)  # a repeated number continues below
         if last > MOST_ROWS:
             raise too_many_cells()
-        if cells := _placed(row):
+        if cells := _texts_of(row):
             own.take(cells)
             room.take(cells)
             rows[last] = cells
@@ -163,7 +163,7 @@ def _sheet(sheet: "Worksheet", room: CellBudget) -> Sheet:
     )
 
 
-def _placed(row: list[Any]) -> list[str]:
+def _texts_of(row: list[Any]) -> list[str]:
     """Texts of the cells of a row, each in its column, up to the last filled one."""
     cells = {cell.column: text for cell in row if (text := _text(cell))}
     return [cells.get(place, "") for place in range(1, max(cells, default=0) + 1)]

@@ -103,8 +103,8 @@ def verified(form: Format, content: bytes, catalogue: Catalogue, question: FileS
     for extra in form.file.extras:
         require(extra)
     file = _contents_of(form, content, catalogue, question)
-    again = form.file.made(file.today, file.reader)
-    own = form.file.made(file.own, file.reader) if file.own and not file.is_of_here else b""
+    again = form.file.content(file.today, file.reader)
+    own = form.file.content(file.own, file.reader) if file.own and not file.is_of_here else b""
     findings, unchecked = _compared(form, file, content, again, own)
     if file.is_of_here:
         findings = [*_of_answer(file), *findings]
@@ -233,7 +233,7 @@ def _reader_of(form: Format, content: bytes, export: Export, lines: Sequence[Fil
     readers = [Reader(lang, units, DIGITS) for lang in languages if lang in LANGUAGES for units in PRESETS.values()]
 
     def common(reader: Reader) -> int:
-        return sum(line.words in words for line in form.lines(form.file.made(export, reader)))
+        return sum(line.words in words for line in form.lines(form.file.content(export, reader)))
 
     return max(readers or [Reader(digits=DIGITS)], key=common)
 

@@ -188,11 +188,11 @@ def _whole(case: Any) -> Any:
 
 def _in_notices(saved: Mapping[str, Any], today: Selection) -> Iterator[Difference]:
     """Values of notices that differ, by the sentences' names; the differences of an answer do not include them."""
-    known, seen = [*today.notices], Counter[str]()
+    known, counts = [*today.notices], Counter[str]()
     for place, one in enumerate(saved.get("notices") or ()):
         code, values = one.get("code"), one.get("values") or {}
-        same = [other for other in known if other.code == code][seen[code] :]
-        seen[code] += 1
+        same = [other for other in known if other.code == code][counts[code] :]
+        counts[code] += 1
         for name, value in values.items() if same else ():
             if name in same[0].values and not is_same(value, same[0].values[name]):
                 pointer_ = f"/notices/{place}/values/{name}"

@@ -243,6 +243,6 @@ async def _with_store(app: FastAPI) -> AsyncIterator[None]:
     yield
     asking.cancel()
     await asyncio.wait({asking})
-    await fleets.ended(app.state)
+    await fleets.wait_for_end(app.state)
     app.state.pools.close()
     await store.close()

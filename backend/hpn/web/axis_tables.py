@@ -22,7 +22,7 @@ from hpn.store import AxisDraft
 from hpn.tables.files import TableBounds
 from hpn.web.columns import draft_of
 
-WANTED = TableBounds(AXIS_INPUTS, most_rows=50_000, most_characters=4_000_000, takes=are_taken)
+BOUNDS = TableBounds(AXIS_INPUTS, most_rows=50_000, most_characters=4_000_000, takes=are_taken)
 """Limits of a table whose columns are not named as in `hpn fleet`: rows and characters."""
 
 
@@ -46,10 +46,10 @@ def _draft(row: TableAxis, answer: AxisAnswer, numbers: Sequence[int]) -> AxisDr
     axis = row.axis
     if row.faults and answer.status != "open":  # a cell is faulty, even if the models accept the rest
         axis, answer = Axis(), AxisAnswer("open", catalogue_version=answer.catalogue_version)
-    return replace(draft_of(axis, _placed(row.faults, answer, numbers)), name=row.name)
+    return replace(draft_of(axis, _with_places(row.faults, answer, numbers)), name=row.name)
 
 
-def _placed(faults: Sequence[CellFault], answer: AxisAnswer, numbers: Sequence[int]) -> AxisAnswer:
+def _with_places(faults: Sequence[CellFault], answer: AxisAnswer, numbers: Sequence[int]) -> AxisAnswer:
     """Answer whose faults name the columns of the table, and its rows if these are known."""
     if not faults and answer.status == "open" and numbers:
         faults = [located(0, each.location, each.wording, each.code) for each in answer.faults]

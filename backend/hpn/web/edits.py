@@ -17,7 +17,7 @@ from hpn.store import AxisDraft, Change, Machine, SavedAxis
 from hpn.web.columns import columns_of, common_of, draft_of, drafts_of, json_of, own_of, resolved, without_of
 from hpn.web.door.problems import Problem
 from hpn.web.long_work import answers_in_steps
-from hpn.web.machines import answered, apply, author_of, no_axis, patched
+from hpn.web.machines import answers_under, apply, author_of, no_axis, patched
 
 Json = dict[str, Any]
 
@@ -32,14 +32,14 @@ class Effect(NamedTuple):
     weight_kg: float | None
 
 
-def named(machine: Machine, numbers: Sequence[int] | Literal["all"]) -> list[SavedAxis]:
+def axes_by_number(machine: Machine, numbers: Sequence[int] | Literal["all"]) -> list[SavedAxis]:
     """Axes by their numbers; Problem 422 for an unknown number."""
     by_number = {axis.number: axis for axis in machine.items}
-    wanted = list(by_number) if numbers == "all" else list(dict.fromkeys(numbers))
-    if missing := [number for number in wanted if number not in by_number]:
+    chosen_numbers = list(by_number) if numbers == "all" else list(dict.fromkeys(numbers))
+    if missing := [number for number in chosen_numbers if number not in by_number]:
         detail = f"names {missing[0]}, which is no axis of this machine"
         raise Problem(422, f"numbers {detail}", [(("numbers",), detail)])
-    return [by_number[number] for number in wanted]
+    return [by_number[number] for number in chosen_numbers]
 
 
 FIELDS = ("name", "quantity", "note", "ordering_code", "without", "application")
@@ -99,13 +99,13 @@ def effect_of(machine: Machine, drafts: Mapping[int, AxisDraft], catalogue: Cata
     other = [n for n, draft in drafts.items() if draft.answer["designation"] != now[n].answer["designation"]]
     without = [n for n, draft in drafts.items() if draft.answer["selected"] is None and draft.ordering_code is None]
     before, then = (
-        gears_of((placed(number, axis) for number, axis in axes.items()), catalogue).weight_kg
+        gears_of((order_axis(number, axis) for number, axis in axes.items()), catalogue).weight_kg
         for axes in (now, {**now, **drafts})
     )
     return Effect(len(drafts), tuple(other), tuple(without), before, then)
 
 
-def placed(number: int, axis: AxisDraft) -> OrderAxis:
+def order_axis(number: int, axis: AxisDraft) -> OrderAxis:
     """Data of an axis that count for the order of gears."""
     return OrderAxis(number, axis.quantity, axis.ordering_code, axis.answer["selected"], motor_of(axis.application))
 
@@ -182,7 +182,7 @@ def plan_patches(
 
 def plan_common(machine: Machine, common: Json, catalogue: Catalogue, by: str | None) -> Plan:
     """Plan of other common values."""
-    replies = answered(machine, common, catalogue)
+    replies = answers_under(machine, common, catalogue)
     values = {"common": msgspec.json.encode(common).decode()}
     axes = {
         axis.number: replace(axis, answer=answer) for axis, (_, _, answer) in zip(machine.items, replies, strict=True)
@@ -232,8 +232,8 @@ def plan_addition(
 
 def plan_removal(machine: Machine, axes: Sequence[SavedAxis], by: str | None) -> tuple[Change, Undo]:
     """Change that removes axes, and its inverse, which restores them by their numbers."""
-    gone = [(axis.number, axis.version) for axis in axes]
-    return Change(machine.version, by, removed=gone), Undo(removed=tuple(n for n, _ in gone), order=machine.order)
+    rows = [(axis.number, axis.version) for axis in axes]
+    return Change(machine.version, by, removed=rows), Undo(removed=tuple(n for n, _ in rows), order=machine.order)
 
 
 def plan_undo(
@@ -249,11 +249,11 @@ def plan_undo(
             raise OvertakenError
         return plan_common(machine, undo.common[1], catalogue, by)[:2]
     if undo.patches:
-        wanted = [(number, each) for each in undo.patches for number in each.numbers]
-        lost = [n for n, each in wanted if n not in there or not _is_left(own_values(there[n]), each.left)]
-        if lost:
-            raise OvertakenError(lost)
-        return plan_patches(machine, [(there[n], each.patch) for n, each in wanted], catalogue, by)[:2]
+        patches = [(number, each) for each in undo.patches for number in each.numbers]
+        overtaken = [n for n, each in patches if n not in there or not _is_left(own_values(there[n]), each.left)]
+        if overtaken:
+            raise OvertakenError(overtaken)
+        return plan_patches(machine, [(there[n], each.patch) for n, each in patches], catalogue, by)[:2]
     if undo.added:
         return plan_removal(machine, [there[number] for number in undo.added if number in there], by)
     common = common_of(machine)

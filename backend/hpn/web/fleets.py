@@ -67,7 +67,7 @@ async def workplace(request: Request) -> AsyncIterator[Path]:
     settings: Settings = request.app.state.settings
     with spool.usable(), _under_way(request.app.state):
         folder = Path(tempfile.mkdtemp(prefix=PREFIX, dir=settings.spool_folder))
-        with locked(folder):
+        with folder_lock(folder):
             try:
                 yield folder
             finally:
@@ -87,7 +87,7 @@ def _under_way(state: State) -> Iterator[None]:
         state.fleets_under_way.discard(task)
 
 
-async def ended(state: State) -> None:
+async def wait_for_end(state: State) -> None:
     """Wait until fleets cancelled by the shutdown have ended and removed their folders, at most END_SECONDS.
 
     The server ends the process right after the application, even if tasks still run.
@@ -97,7 +97,7 @@ async def ended(state: State) -> None:
 
 
 @contextmanager
-def locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
+def folder_lock(folder: Path, *, wait: bool = True) -> Iterator[None]:
     """Hold the lock of a folder; it ends with this process. OSError without `wait` if another process holds it."""
     lock = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)  # anything else could block, a FIFO for ever
     try:
@@ -110,7 +110,7 @@ def locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
 def remove_leftovers(settings: Settings) -> None:
     """Remove folders of killed services; an empty folder is kept, as it may have just been created."""
     for folder in Path(settings.spool_folder or tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        with suppress(OSError), locked(folder, wait=False):  # raised if it is locked or another user's
+        with suppress(OSError), folder_lock(folder, wait=False):  # raised if it is locked or another user's
             if any(folder.iterdir()):
                 shutil.rmtree(folder, ignore_errors=True)
 

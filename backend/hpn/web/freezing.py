@@ -19,7 +19,7 @@ from hpn.web.machines import LIMITS, RETRY_SECONDS, TRIES, editable, guarded, of
 from hpn.words.wording import N_, Sentence
 
 SAVE_FIRST = N_("nobody has saved this machine yet: save it first, then freeze a revision")
-TAKEN = N_("there is a revision {label} already: choose another label")
+LABEL_IN_USE = N_("there is a revision {label} already: choose another label")
 HEAD = ("selected", "designation", "status", "utilisation", "engine_version", "catalogue_version")
 """Columns of an answer that a selection's line has, too."""
 
@@ -46,21 +46,23 @@ async def freeze(
             raise other_state()
         if machine.saved is None:
             raise Problem(409, Sentence(SAVE_FIRST))
-        revision = await compute(request, "batches", _frozen, machine, block, request.app.state.catalogue, draft)
+        revision = await compute(
+            request, "batches", _revision_draft, machine, block, request.app.state.catalogue, draft
+        )
         revision = replace(revision, created_by=request.state.api_key)
         try:
             label: str | None = await guarded(
                 request.app.state.store.freeze(id, machine.version, revision, LIMITS, once)
             )
         except LabelTakenError:
-            raise Problem(409, Sentence(TAKEN, {"label": block.label})) from None
+            raise Problem(409, Sentence(LABEL_IN_USE, {"label": block.label})) from None
         if label is not None:
             note(request, **{machine.kind: id})
             return label
     raise Problem.later("others are changing this machine at the moment; try again", RETRY_SECONDS)
 
 
-def _frozen(machine: Machine, block: RevisionBlock, catalogue: Catalogue, draft: Draft | None) -> RevisionDraft:
+def _revision_draft(machine: Machine, block: RevisionBlock, catalogue: Catalogue, draft: Draft | None) -> RevisionDraft:
     if draft is None:
         machine = of_today(machine, catalogue)
     else:

@@ -47,11 +47,11 @@ class WorkProgress:
         """End the work at its next step, unless it is saving already."""
         self._given_up.set()
 
-    def count(self, done: int, of: int, *, is_saving: bool = False) -> None:
+    def count(self, steps: int, of: int, *, is_saving: bool = False) -> None:
         """Record the progress of the work; raises GivenUpError if the work is given up."""
         if self._given_up.is_set():
             raise GivenUpError
-        self.done, self.of, self.is_saving = done, of, is_saving
+        self.done, self.of, self.is_saving = steps, of, is_saving
 
 
 _PROGRESS: ContextVar[WorkProgress | None] = ContextVar("progress", default=None)

@@ -44,7 +44,7 @@ EXCESS = {
 NOT_YOURS = N_("Only the key that calculated this machine may see it and save it.")
 
 
-def gone(id: str) -> Problem:
+def no_document(id: str) -> Problem:
     """Problem 404 for an unknown document."""
     return Problem(404, f"there is no machine {id[:60]!r}; it may have been deleted, or nobody has saved it for a day")
 
@@ -60,7 +60,7 @@ async def machine_of(
     """Document with all axes or those of `numbers`; Problem 404, and 401 or 403 as `require_seen` raises."""
     machine: Machine | None = await request.app.state.store.find_machine(id, kind, numbers)
     if machine is None:
-        raise gone(id)
+        raise no_document(id)
     require_seen(request, machine)
     return machine
 
@@ -109,10 +109,10 @@ async def apply(
         few = len(machine.items) <= FEW_AXES
         change = await compute(request, "pages" if few else "batches", make, machine)
         begin_to_save()
-        done = await guarded(request.app.state.store.change(id, change, LIMITS, once))
-        if done is not None:
+        outcome = await guarded(request.app.state.store.change(id, change, LIMITS, once))
+        if outcome is not None:
             note(request, machine=id)
-            numbers_done: list[int] = done
+            numbers_done: list[int] = outcome
             return numbers_done
     raise Problem.later("others are changing this machine at the moment; try again", RETRY_SECONDS)
 
@@ -172,7 +172,7 @@ def require_document(request: Request, machine: Machine) -> None:
 # --- Answers ----------------------------------------------------------------------------------------------------------
 
 
-def answered(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) -> list[tuple[int, int, Answer]]:
+def answers_under(machine: Machine, common: Mapping[str, Any], catalogue: Catalogue) -> list[tuple[int, int, Answer]]:
     """Number, version and answer of each axis of a document under other common values, for a change."""
     questions = (AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in machine.items)
     replies = answers_in_steps(questions, len(machine.items), catalogue)
@@ -198,7 +198,7 @@ def of_today(machine: Machine, catalogue: Catalogue) -> Machine:
     today = (ENGINE_VERSION, catalogue.version)
     if all((axis.answer["engine_version"], axis.answer["catalogue_version"]) == today for axis in machine.items):
         return machine
-    fresh = answered(machine, common_of(machine), catalogue)
+    fresh = answers_under(machine, common_of(machine), catalogue)
     items = [replace(axis, answer=answer) for axis, (_, _, answer) in zip(machine.items, fresh, strict=True)]
     return replace(machine, items=tuple(items))
 

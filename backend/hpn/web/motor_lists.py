@@ -77,18 +77,18 @@ async def replace(
 ) -> SavedMotorList:
     """Replace name and motors of a list; Problem 404, 409, or `overtaken`, by default 412, for another version."""
     try:
-        done = await request.app.state.store.replace_motor_list(id, draft, version)
+        is_replaced = await request.app.state.store.replace_motor_list(id, draft, version)
     except NameTakenError:
         raise _name_taken(draft.name) from None
-    require_done(done, version, not_found(id), overtaken)
+    require_done(is_replaced, version, not_found(id), overtaken)
     note(request, motor_list=id)
     return await list_of(request, id)
 
 
 async def remove(request: Request, id: str, version: int | None, overtaken: Problem | None = None) -> None:
     """Delete a list; Problem 404, or `overtaken`, by default 412, for another version."""
-    done = await request.app.state.store.delete_motor_list(id, version)
-    require_done(done, version, not_found(id), overtaken)
+    is_removed = await request.app.state.store.delete_motor_list(id, version)
+    require_done(is_removed, version, not_found(id), overtaken)
     note(request, motor_list=id)
 
 

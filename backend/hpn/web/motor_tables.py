@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from hpn.application import MotorEntry
 from hpn.application.faults import sentences_of
-from hpn.tables.answers import answered
+from hpn.tables.answers import reading_by_answers
 from hpn.tables.files import TableBounds
 from hpn.tables.motor_inputs import MOTORS
 from hpn.tables.motor_points import POINT
@@ -15,16 +15,16 @@ from hpn.tables.table import Table
 from hpn.web.motor_lists import MOST_LISTED
 from hpn.words.wording import N_, Sentence
 
-WANTED = TableBounds(MOTORS, most_rows=4 * MOST_LISTED, most_characters=2_000_000)
+BOUNDS = TableBounds(MOTORS, most_rows=4 * MOST_LISTED, most_characters=2_000_000)
 """Limits of a table of motors: rows, with headings and titles, and characters."""
 
 
 def read_answered(content: bytes, texts: Sequence[str]) -> tuple[Reading, tuple[Sentence, ...]]:
     """Reading of a file with a program's answers, and faults of these answers; no unit is assumed."""
-    return answered(
+    return reading_by_answers(
         texts,
         MOTORS,
-        lambda choices: reading_of(content, WANTED, choices),
+        lambda choices: reading_of(content, BOUNDS, choices),
         lambda reading: reading.table.columns if reading.table else (),
     )
 

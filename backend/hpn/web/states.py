@@ -100,4 +100,4 @@ def differences(
     """Differences of two states, for their page and files."""
     heading = ExportTitle(machine.title or "", machine.reference or "", machine.author or "")
     link, moment = absolute(request, comparison(machine, labels)), datetime.now(UTC)
-    return DifferencesExport(labels, documents_of(*states), catalogues_of(*states), link, heading, made=moment)
+    return DifferencesExport(labels, documents_of(*states), catalogues_of(*states), link, heading, moment=moment)

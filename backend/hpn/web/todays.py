@@ -43,12 +43,12 @@ class Todays:
 
     def __init__(self, state: State) -> None:
         self._state = state
-        self._wanted = asyncio.Event()
+        self._wake = asyncio.Event()
         self._started = datetime.now(UTC)
 
     def wake(self) -> None:
         """Trigger a check."""
-        self._wanted.set()
+        self._wake.set()
 
     def note(self, lines: Iterable[DocumentLine | SelectionLine]) -> None:
         """Trigger a check if a list has documents without today's verdict."""
@@ -62,8 +62,8 @@ class Todays:
         while True:
             with suppress(TimeoutError):
                 async with asyncio.timeout(patience):
-                    await self._wanted.wait()
-            self._wanted.clear()
+                    await self._wake.wait()
+            self._wake.clear()
             patience = PATIENCE_SECONDS
             try:
                 while await self.ask_some():
@@ -139,7 +139,7 @@ def _verdict_of(answer: Any, ordering_code: str | None) -> tuple[str, str | None
 def _today_of(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
     """Columns of today's answers to selections; a selection that fails gets `today_changed` None."""
     try:
-        return _answered(selections, catalogue)
+        return _answers(selections, catalogue)
     except Exception:
         if len(selections) > 1:
             return [columns for each in selections for columns in _today_of([each], catalogue)]
@@ -147,7 +147,7 @@ def _today_of(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[st
         return [{"today_changed": None}]
 
 
-def _answered(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
+def _answers(selections: Sequence[Stale], catalogue: Catalogue) -> list[dict[str, Any]]:
     stale = [each for each in selections if not each.is_of_today]
     wholes = [AxisQuestion(resolve(msgspec.json.decode(each.application), {}), each.ordering_code) for each in stale]
     by_id = dict(zip((each.id for each in stale), answers(wholes, catalogue), strict=True))

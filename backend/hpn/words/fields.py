@@ -58,10 +58,10 @@ def in_parts(value: Any, validate: Callable[[Any], tuple[Any, ...]]) -> tuple[An
     """
     if not isinstance(value, list | tuple) or len(value) <= PART:
         return validate(value)
-    done: tuple[Any, ...] = ()
+    path: tuple[Any, ...] = ()
     for start in range(0, len(value), PART):
-        done = validate((*done, *value[start : start + PART]))
-    return done
+        path = validate((*path, *value[start : start + PART]))
+    return path
 
 
 def whole(value: object) -> object:

@@ -45,7 +45,7 @@ class Reply(Struct, frozen=True):
         kinds, sparse = get_type_hints(cls, include_extras=True), cls.__struct_config__.omit_defaults
         fields = {
             field.encode_name: core_schema.typed_dict_field(
-                handler.generate_schema(_sent(kinds[field.name])),
+                handler.generate_schema(_on_wire(kinds[field.name])),
                 required=field.required or not (sparse or field.default is UNSET),
             )
             for field in structs.fields(cls)
@@ -59,7 +59,7 @@ def finite(value: float) -> float | None:
     return value if isfinite(value) else None
 
 
-def _sent(kind: Any) -> Any:
+def _on_wire(kind: Any) -> Any:
     """Type of a field in a reply: without the unset option."""
     options = get_args(kind)
     return options[0] if UnsetType in options else kind

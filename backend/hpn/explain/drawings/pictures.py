@@ -83,7 +83,7 @@ class Pictures:
         """Drawings of the loads at their own places while their lever is unknown; empty if nothing is rated."""
         life = self.chosen.check("output_bearing_life")
         picture = bearing_picture(self.subject, life, without_lever=True) if life and life.demand is None else None
-        return self._drawn(envelope_scene(picture, self.reader)) if picture else []
+        return self._draw(envelope_scene(picture, self.reader)) if picture else []
 
     @property
     def needed_centres(self) -> list[NeededCentre]:
@@ -99,7 +99,7 @@ class Pictures:
     @cached_property
     def envelope(self) -> list[Element]:
         """Drawings of `bearing`, which must exist, for a narrow and for a wide place."""
-        return self._drawn(self.envelope_scene)
+        return self._draw(self.envelope_scene)
 
     @property
     def bearing_figure(self) -> Figure:
@@ -107,7 +107,7 @@ class Pictures:
         assert self.bearing is not None
         return bearing_figure(self.envelope_scene, self.bearing, self.reader)
 
-    def _drawn(self, scene: Scene) -> list[Element]:
+    def _draw(self, scene: Scene) -> list[Element]:
         return [chart(scene, self.reader, size) for size in (SMALL, LARGE)]
 
     @cached_property

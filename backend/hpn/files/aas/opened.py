@@ -85,7 +85,7 @@ class _Sizing:
 
     content: bytes
     parts: Mapping[str, bytes] = field(default_factory=dict)
-    taken: set[int] = field(default_factory=set)
+    used: set[int] = field(default_factory=set)
 
     def opened(self) -> OpenedSizing:
         self.parts = _unpacked(self.content) if self.content.startswith(MAGIC) else {"": self.content}
@@ -93,14 +93,14 @@ class _Sizing:
         if sizing is None:
             raise RefusedError(NO_SIZING)
         sections = list(self._sections(sizing))
-        application, note = self._carried(sizing, sections), None
+        application, note = self._own_application(sizing, sections), None
         if application is None:
             if not sections:
                 raise RefusedError(NO_MOTION)
             application = Application.model_validate(self._derived(sizing, sections))
             note = self._missing(sizing)
         text = application.model_dump_json(exclude_none=True)
-        return OpenedSizing(text, tuple(_unused(sizing, self.taken)), note=note)
+        return OpenedSizing(text, tuple(_unused(sizing, self.used)), note=note)
 
     def _sizings(self) -> Iterator[Element]:
         for name, part in self.parts.items():
@@ -113,7 +113,7 @@ class _Sizing:
         for name in names:
             part = next(part.of(meaning(name)), None) if part else None
         if part is not None:
-            self.taken.add(id(part))
+            self.used.add(id(part))
         return part
 
     def _number(self, element: Element, name: str) -> float | None:
@@ -124,7 +124,7 @@ class _Sizing:
         """Sentence about unused elements that act on the load; None where all of them are 0."""
         groups = [sizing.of(meaning(name)) for name in ("ApplicationRequirements", "TransformationMechanism")]
         parts = [part for element in chain(*groups) for part in _inside(element)]
-        open_ = {known for part in parts if id(part) not in self.taken and _is_given(part) for known in part.meanings}
+        open_ = {known for part in parts if id(part) not in self.used and _is_given(part) for known in part.meanings}
         outside = [name for name in ON_LOAD if meaning(name).strip() in open_]
         return Sentence(MISSING, {"names": first_of(outside, len(outside))}) if outside else None
 
@@ -141,14 +141,14 @@ class _Sizing:
                     yield self._section(part, kind, metadata, columns)
 
     def _section(self, part: Element, kind: str, metadata: str, columns: Sequence[str]) -> MotionSection:
-        wanted = [*columns, *ACTING]
+        candidates = [*columns, *ACTING]
         file, described = self._take(part, "MotionSectionFile"), self._take(part, metadata)
         known = _columns_of(described, part.name) if described else {}
-        self.taken |= {*known.values()}
+        self.used |= {*known.values()}
         content = self.parts.get((file.value or "").lstrip("/")) if file else None
         if content is None:
             raise RefusedError(NO_COURSE, section=part.name, columns=", ".join(columns[:3]))
-        names, rows = _course(content, part.name, [name for name in wanted if name in known] or list(columns))
+        names, rows = _course(content, part.name, [name for name in candidates if name in known] or list(columns))
         constants = {name: value for name in CONSTANTS if (value := self._number(part, name)) is not None}
         return MotionSection(kind, metadata, constants, names, rows)
 
@@ -160,7 +160,7 @@ class _Sizing:
             values = {n: value for n in names if (value := self._number(mechanism, n)) is not None}
             if not 0 < values.get("Efficiency", 1.0) <= 100:
                 del values["Efficiency"]
-                self.taken.discard(id(next(mechanism.of(meaning("Efficiency")))))
+                self.used.discard(id(next(mechanism.of(meaning("Efficiency")))))
         cycle = cycle_of(sections, values)
         loads = any("radial_N" in phase or "axial_N" in phase for phase in cycle["phases"])
         degrees = self._ambient(sizing)
@@ -171,13 +171,13 @@ class _Sizing:
         span = self._take(sizing, "ApplicationRequirements", "Environmental", "AmbientTemperatureMotor")
         match = _LEADING.fullmatch((span.largest or span.value or "")[:200]) if span else None
         if match is None or match[2].strip() not in ("", "°C"):
-            self.taken.discard(id(span))
+            self.used.discard(id(span))
             return None
         return float(match[1].replace(",", "."))
 
     # --- The application that the package carries ---------------------------------------------------------------------
 
-    def _carried(self, sizing: Element, sections: Sequence[MotionSection]) -> Application | None:
+    def _own_application(self, sizing: Element, sections: Sequence[MotionSection]) -> Application | None:
         """Application of `application.json` where its motion is that of the sections; None for any other."""
         information = next(sizing.of(meaning("SizingProjectInformation")), None)
         for link in information.of(meaning("SizingProjectLink")) if information else ():
@@ -188,7 +188,7 @@ class _Sizing:
                 continue
             own = list(sections_of(application.duty_cycle))
             if len(own) == len(sections) and all(map(_is_same, own, sections)):
-                self.taken.add(id(link))
+                self.used.add(id(link))
                 self._ambient(sizing)
                 return application
         return None
@@ -224,22 +224,22 @@ def _is_same(one: MotionSection, other: MotionSection) -> bool:
     return constants and bool((np.abs(one.rows - other.rows) <= room).all())
 
 
-def _unused(element: Element, taken: set[int], path: str = "") -> Iterator[str]:
+def _unused(element: Element, used: set[int], path: str = "") -> Iterator[str]:
     """Paths of unused elements: those without a taken element inside."""
     for part in element.parts:
         if not (part.name or part.meanings):
             continue
         place = "/".join(filter(None, (path, part.name or part.meanings[0])))
-        if id(part) in taken and not part.parts:
+        if id(part) in used and not part.parts:
             continue
-        if _has_taken(part, taken):
-            yield from _unused(part, taken, place)
+        if _has_used(part, used):
+            yield from _unused(part, used, place)
         else:
             yield place[:200]
 
 
-def _has_taken(element: Element, taken: set[int]) -> bool:
-    return id(element) in taken or any(_has_taken(part, taken) for part in element.parts)
+def _has_used(element: Element, used: set[int]) -> bool:
+    return id(element) in used or any(_has_used(part, used) for part in element.parts)
 
 
 # --- Package, numbers, courses ----------------------------------------------------------------------------------------

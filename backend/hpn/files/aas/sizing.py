@@ -65,7 +65,7 @@ def sizing(export: Export) -> model.Submodel:
         *([_information(export, moment)] if moment else []),
         _requirements(export),
         *_mechanism(export.application),
-        _answered(export),
+        _answer(export),
     ]
     return model.Submodel(
         urn("sizing", export.link),
@@ -174,7 +174,7 @@ def _of_linear(motion: LinearMotion, application: Application) -> dict[str, floa
 # --- Answer -----------------------------------------------------------------------------------------------------------
 
 
-def _answered(export: Export) -> model.SubmodelElementCollection:
+def _answer(export: Export) -> model.SubmodelElementCollection:
     account = export.account
     return _group(
         "SizingResult",

@@ -24,7 +24,7 @@ from hpn.files.aas.concepts import CONCEPTS, concept, concept_id, reference, tex
 from hpn.files.aas.sections import CSV_TYPE
 from hpn.files.aas.sizing import files_of, sizing
 from hpn.files.aas.technical import technical_data
-from hpn.files.carried import APPLICATION, DOCUMENT, RESULT, carried
+from hpn.files.carried import APPLICATION, DOCUMENT, RESULT, parts_of
 from hpn.files.export import DIGITS, LOSS_FREE, Export
 from hpn.installed import has_extra
 from hpn.words.reader import Reader
@@ -56,12 +56,12 @@ def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
     It contains the report where the report's extra is installed.
     """
     files = aasx.DictSupplementaryFileContainer()  # type: ignore[no-untyped-call]
-    for name, part in carried(export, Reader()).items():
+    for name, part in parts_of(export, Reader()).items():
         files.add_file(PARTS + name, BytesIO(part), "application/json")
     for path, course in files_of(export).items():
         files.add_file(path, BytesIO(course), CSV_TYPE)
     if has_extra("report"):
-        files.add_file(REPORT, BytesIO(formats.PDF.made(export, Reader(digits=DIGITS))), PDF_TYPE)
+        files.add_file(REPORT, BytesIO(formats.PDF.content(export, Reader(digits=DIGITS))), PDF_TYPE)
     packed = BytesIO()
     with aasx.AASXWriter(packed, failsafe=False) as writer:
         writer.write_core_properties(_properties(export))

@@ -153,6 +153,6 @@ def dated(export: Export) -> datetime | None:
     """Moment of saving, else the day on which the files are made, in UTC; None without either."""
     if export.created is not None:
         return export.created.astimezone(UTC)
-    if export.made is None:
+    if export.moment is None:
         return None
-    return export.made.astimezone(UTC).replace(hour=0, minute=0, second=0, microsecond=0)
+    return export.moment.astimezone(UTC).replace(hour=0, minute=0, second=0, microsecond=0)

@@ -27,8 +27,8 @@ class Element:
 
     def of(self, meaning: str) -> Iterator["Element"]:
         """Parts with a meaning."""
-        wanted = meaning.strip()
-        return (part for part in self.parts if wanted in part.meanings)
+        meaning_id = meaning.strip()
+        return (part for part in self.parts if meaning_id in part.meanings)
 
 
 def submodels_of(content: bytes) -> list[Element]:

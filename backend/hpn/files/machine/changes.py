@@ -51,7 +51,7 @@ class DifferencesExport:
     link: str
     heading: ExportTitle = field(default_factory=ExportTitle)
     created: datetime | None = None
-    made: datetime | None = None
+    moment: datetime | None = None
 
     @cached_property
     def differences(self) -> DocumentDifferences:

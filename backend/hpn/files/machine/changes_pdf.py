@@ -70,7 +70,7 @@ def content(export: DifferencesExport, reader: Reader) -> dict[str, Any]:
         "labels": data["labels"] | {key: text(label) for key, label in LABELS.items()},
         "title": title,
         "head": [shortened(title, LONGEST_HEAD), arrow],
-        "block": block(export.heading, reader, export.created, export.made)
+        "block": block(export.heading, reader, export.created, export.moment)
         | {"revision": [text(N_("Revision")), arrow]},
         "saved": export.created is not None,
         **link_of(export.link, reader, is_saved=True, notes=LINK),

@@ -73,7 +73,7 @@ def content(export: MachineExport, pages: Pages, reader: Reader) -> dict[str, An
         "labels": data["labels"] | {key: reader.text(label) for key, label in LABELS.items()},
         "title": title,
         "head": [shortened(title, LONGEST_HEAD), running_head(export.heading, engine, catalogue, reader)],
-        "block": block(export.heading, reader, export.created, export.made),
+        "block": block(export.heading, reader, export.created, export.moment),
         "saved": export.created is not None,
         **link_of(export.link, reader, is_saved=export.created is not None, notes=LINK, carried=NOT_FROZEN),
         "summary": _summary(export, reader),

@@ -39,9 +39,9 @@ TOO_MANY_FULL = N_("the report has the whole calculation of at most {most} axes;
 class MachineExport:
     """Document, the catalogue of its answers, and the data that lead a reader back to it.
 
-    `heading` has the label of the revision, none for the working copy. `created` is the moment of that revision, `made`
-    the day of a file of the working copy. `before` is the previous revision with its label; the report marks the
-    differences from it.
+    `heading` has the label of the revision, none for the working copy. `created` is the moment of that revision,
+    `moment` that of a file of the working copy. `before` is the previous revision with its label; the report marks
+    the differences from it.
     """
 
     document: Frozen
@@ -49,7 +49,7 @@ class MachineExport:
     link: str
     heading: ExportTitle = field(default_factory=ExportTitle)
     created: datetime | None = None
-    made: datetime | None = None
+    moment: datetime | None = None
     before: tuple[str, Frozen] | None = None
 
     @cached_property
@@ -149,7 +149,7 @@ def _export(export: MachineExport, axis: FrozenAxis, application: Application, s
         link=f"{export.link}/axes/{axis.number}",
         heading=heading,
         created=export.created,
-        made=export.made,
+        moment=export.moment,
         catalogue=export.catalogue,
         chosen=axis.answer.designation or "",
     )

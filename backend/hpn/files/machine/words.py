@@ -49,9 +49,9 @@ def check_of(code: str | None, reader: Reader) -> str:
 def bound_of(axis: FrozenAxis, *, in_worst_case: bool = False) -> float:
     """Largest accepted utilisation of an axis's governing check, as given or in its worst case."""
     requirements = msgspec.json.decode(axis.resolved).get("requirements") or {}
-    given = requirements if isinstance(requirements, dict) else {}
+    values = requirements if isinstance(requirements, dict) else {}
     names = ("worst_case_utilisation", "utilisation") if in_worst_case else ("utilisation",)
-    own = next((share for name in names if isinstance(share := given.get(name), float | int)), 1.0)
+    own = next((share for name in names if isinstance(share := values.get(name), float | int)), 1.0)
     return allowed(axis.answer.worst_governing_check if in_worst_case else axis.answer.governing_check, own)
 
 

@@ -17,7 +17,7 @@ from hpn.words.wording import N_, Sentence
 Row = dict[str, Any]
 
 ORDER = {check.code: place for place, check in enumerate(CHECKS)}
-TOLD = frozenset({"average_torque", "life", "output_bearing_life"})
+WITH_STEPS = frozenset({"average_torque", "life", "output_bearing_life"})
 """Checks whose equation carries their basis as a note."""
 
 AS_LIMITED = frozenset({"repeated_peak_torque", "motor_speed", "motor_rated_speed"})
@@ -45,7 +45,7 @@ def limits(account: Account, reader: Reader) -> list[Row]:
 
 def bases(export: Export, reader: Reader) -> list[tuple[str, Any]]:
     """Title and basis of each check, except where they stand beside its equation or limit."""
-    codes = AS_LIMITED | (TOLD & {step.code for step in _steps(export)})
+    codes = AS_LIMITED | (WITH_STEPS & {step.code for step in _steps(export)})
     return [
         (reader.text(check.definition.title), sentence(reader.text(check.definition.basis)))
         for check in export.account.checks

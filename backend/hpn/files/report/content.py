@@ -86,7 +86,7 @@ def content(export: Export, reader: Reader) -> dict[str, Any]:
     return frame(export.heading, reader) | {
         "title": title,
         "head": [shortened(title, LONGEST_HEAD), head],
-        "block": block(export.heading, reader, export.created, export.made),
+        "block": block(export.heading, reader, export.created, export.moment),
         "saved": export.created is not None,
         **link_of(export.link, reader, is_saved=export.created is not None),
         **parts(export, reader),
@@ -155,10 +155,10 @@ def running_head(heading: ExportTitle, engine: str, catalogue: str, reader: Read
 
 
 def block(
-    heading: ExportTitle, reader: Reader, created: datetime | None, made: datetime | None
+    heading: ExportTitle, reader: Reader, created: datetime | None, moment: datetime | None
 ) -> dict[str, list[str]]:
     """Fields of the title block: label and text; a dash for an empty field."""
-    dated = reader.date(created) if created else reader.day(made) if made else ""
+    dated = reader.date(created) if created else reader.day(moment) if moment else ""
     fields = {
         "reference": (N_("Reference"), heading.reference),
         "revision": (N_("Revision"), heading.revision),

@@ -10,7 +10,7 @@ from typing import Any
 
 import typst
 
-from hpn.files.carried import carried
+from hpn.files.carried import parts_of
 from hpn.files.export import Export
 from hpn.files.report.content import content
 from hpn.installed import data_folder
@@ -36,7 +36,7 @@ _ESCAPED = re.compile(r"\\u\{([0-9a-f]+)\}")
 
 def pdf(export: Export, reader: Reader) -> bytes:
     """Report on an export."""
-    title, parts = export.heading.title.strip(), carried(export, reader)
+    title, parts = export.heading.title.strip(), parts_of(export, reader)
     return printed("report.typ", content(export, reader), title, export.created, parts)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from hpn.account.over_tolerance import over_tolerance
 from hpn.account.readings import CheckReading
 from hpn.engine.tolerance_words import tolerance_of
-from hpn.files.carried import carried
+from hpn.files.carried import parts_of
 from hpn.files.export import Export
 from hpn.files.words import catalogue_version
 from hpn.files.workbook.candidates import write_candidates
@@ -40,7 +40,7 @@ def workbook(export: Export, reader: Reader) -> bytes:
     ):
         if write is not write_equations or export.gear(export.candidate):
             write(SelectionSheet(book.add_worksheet(reader.text(name)), styles, export, reader))
-    write_carried(book.add_worksheet(CARRIED), carried(export, reader))
+    write_carried(book.add_worksheet(CARRIED), parts_of(export, reader))
     book.close()
     return content.getvalue()
 
@@ -75,7 +75,7 @@ def _write_title_block(sheet: SelectionSheet) -> None:
     sheet.put(0, heading.title or reader.text(N_("Untitled selection")), "title")
     sheet.sheet.set_row(0, 20)
     sheet.sheet.freeze_panes(1, 0)
-    candidate, moment = export.candidate, export.made
+    candidate, moment = export.candidate, export.moment
     block: dict[str, Cell] = {
         N_("Gear"): candidate.designation,
         N_("Ordering code"): heading.ordering_code,

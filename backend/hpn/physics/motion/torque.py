@@ -95,13 +95,13 @@ def _zeros(function: Callable[[FloatArray], FloatArray], a: FloatArray, b: Float
             a, fa = t, ft
             best = np.where(np.abs(fa) < np.abs(fb), a, b)
             limit = (2 * np.finfo(np.float64).eps * np.abs(best) + least) / np.abs(b - c)
-            done = (limit > 0.5) | (np.minimum(np.abs(fa), np.abs(fb)) == 0)
-            if done.all():
+            is_close = (limit > 0.5) | (np.minimum(np.abs(fa), np.abs(fb)) == 0)
+            if is_close.all():
                 break
             x, y = (a - b) / (c - b), (fa - fb) / (fc - fb)
             safe = (y**2 < x) & ((1 - y) ** 2 < 1 - x)
             quadratic = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-            step = np.where(done, 0.0, np.clip(np.where(safe, quadratic, 0.5), limit, 1 - limit))
+            step = np.where(is_close, 0.0, np.clip(np.where(safe, quadratic, 0.5), limit, 1 - limit))
     return best
 
 

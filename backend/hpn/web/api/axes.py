@@ -28,7 +28,7 @@ from hpn.web.door.conditions import require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.edits import FIELDS, Effect, after, drafted, effect_of, named, replace_axis
+from hpn.web.edits import FIELDS, Effect, after, axes_by_number, drafted, effect_of, replace_axis
 from hpn.web.machines import (
     apply,
     author_of,
@@ -117,7 +117,7 @@ async def add_axes(request: Request, id: schemas.Id) -> Response:
     back = [axis.number for axis in axes.axes if axis.number is not None]
     if len(set(back)) < len(back):
         raise Problem(422, "axes must name each number once", [(("axes",), "must name each number once")])
-    gone = [await _removed(request, id, number) for number in back]
+    gone = [await _removed_axis(request, id, number) for number in back]
     catalogue: Catalogue = request.app.state.catalogue
 
     def make(machine: Machine) -> Change:
@@ -164,7 +164,7 @@ def _begun(selection: Machine, axes: SentAxes, catalogue: Catalogue, owner: str 
     )
 
 
-async def _removed(request: Request, id: str, number: int) -> SavedAxis:
+async def _removed_axis(request: Request, id: str, number: int) -> SavedAxis:
     await editable(request, id, [])
     axis: SavedAxis | None = await request.app.state.store.removed_axis(id, number)
     if axis is None:
@@ -215,7 +215,7 @@ async def put_axis(request: Request, id: schemas.Id, number: Number) -> Response
     body = await read_body(request)
     new = await compute(request, "pages", parsed, Axis, body)
     whole = {name: getattr(new, name) for name in FIELDS}
-    return await _changed(request, id, number, lambda axis: whole)
+    return await _change(request, id, number, lambda axis: whole)
 
 
 @router.patch(
@@ -231,7 +231,7 @@ async def change_axis(request: Request, id: schemas.Id, number: Number) -> Respo
     """Merge patch (RFC 7396) of an axis, its own part of the application included."""
     body = await read_body(request, JSON, MERGE_PATCH)
     patch = await compute(request, "pages", _patch_in, body)
-    return await _changed(request, id, number, lambda axis: after(axis, patch))
+    return await _change(request, id, number, lambda axis: after(axis, patch))
 
 
 def _patch_in(body: bytes) -> dict[str, Any]:
@@ -241,7 +241,7 @@ def _patch_in(body: bytes) -> dict[str, Any]:
     return patch
 
 
-async def _changed(request: Request, id: str, number: int, values: Callable[[SavedAxis], dict[str, Any]]) -> Response:
+async def _change(request: Request, id: str, number: int, values: Callable[[SavedAxis], dict[str, Any]]) -> Response:
     """Change the own values of an axis; response with the axis."""
 
     def require(machine: Machine, axis: SavedAxis) -> None:
@@ -302,7 +302,7 @@ async def change_axes(
 
     def make(machine: Machine) -> Change:
         require_document(request, machine)
-        axes = named(machine, changes.numbers)
+        axes = axes_by_number(machine, changes.numbers)
         drafts = drafted([(axis, after(axis, changes.patch)) for axis in axes], common_of(machine), catalogue)
         changed = [(axis.number, axis.version, draft) for axis, draft in zip(axes, drafts, strict=True)]
         effects.append(effect_of(machine, {number: draft for number, _, draft in changed}, catalogue))

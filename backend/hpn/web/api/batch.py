@@ -88,11 +88,11 @@ async def select_batch(request: Request) -> Response:
     body = await read_body(request, maximum_bytes=settings.maximum_batch_body_bytes)
     pool = pool_of(request, "batches")
     with pool.place():
-        lines = await while_present(request, _answered(body, state, pool))
+        lines = await while_present(request, _answer(body, state, pool))
     return JSONBytes(b'{"results":[' + lines[:-1].replace(b"\n", b",") + b"]}")
 
 
-async def _answered(body: bytes, state: State, pool: Pool) -> bytes:
+async def _answer(body: bytes, state: State, pool: Pool) -> bytes:
     """Result lines of a batch, made in slices, so that others get their turn and an abandoned batch ends."""
     settings: Settings = state.settings
     deadline = time.monotonic() + settings.batch_seconds
@@ -116,7 +116,7 @@ def items_of(body: bytes, most: int) -> list[Raw]:
     Raises Problem 400 for malformed JSON, 413 for more than `most` items, 422 for another shape.
     """
     try:
-        body, items = _cut(body, _shape(most))
+        body, items = _items_of(body, _shape(most))
         _require_alone(_beside(body, items))
     except msgspec.ValidationError as error:
         if "of at most length" in str(error):
@@ -130,7 +130,7 @@ def items_of(body: bytes, most: int) -> list[Raw]:
     return items
 
 
-def _cut(body: bytes, shape: Any) -> tuple[bytes, list[Raw]]:
+def _items_of(body: bytes, shape: Any) -> tuple[bytes, list[Raw]]:
     """Body and its items; numbers unknown to JSON, such as NaN, are replaced by 1e999, which no field accepts."""
     try:
         document = msgspec.json.decode(body, type=shape)

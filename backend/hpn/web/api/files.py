@@ -78,7 +78,7 @@ class File:
 
     def content(self, export: Any, reader: Reader, chosen: Options) -> "partial[bytes]":
         """Call that makes the file, for a process that imports nothing of the web."""
-        return partial(self.format.made, export, reader, **chosen)
+        return partial(self.format.content, export, reader, **chosen)
 
 
 FILES = (
@@ -213,7 +213,7 @@ def _computed(application: Application, request: Request) -> Export:
         selection=selection,
         link=absolute(request, link),
         heading=ExportTitle(ordering_code=ordering_code(catalogue, gear).text),
-        made=datetime.now(UTC),
+        moment=datetime.now(UTC),
         catalogue=catalogue,
     )
 

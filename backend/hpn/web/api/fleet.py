@@ -80,7 +80,7 @@ async def size(
     state: State = request.app.state
     with state.disk.share() as share:
         async with workplace(request) as folder:
-            tables = replace(await _received(request, folder, share), ignored=tuple(ignore))
+            tables = replace(await _receive(request, folder, share), ignored=tuple(ignore))
             files = await size_fleet(request, tables, candidates=give == "candidates")
             return TableFile(files.by_kind[give], files.ignored)
 
@@ -109,7 +109,7 @@ class TableFile(StreamingResponse):
 # --- Receiving the table ----------------------------------------------------------------------------------------------
 
 
-async def _received(request: Request, folder: Path, share: SpoolShare) -> Tables:
+async def _receive(request: Request, folder: Path, share: SpoolShare) -> Tables:
     """Table of a request in a file; raises Problem as `pass_body` does, 415 for any other, 400 for a type in GONE."""
     content_type = content_type_of(request)
     if content_type in GONE:

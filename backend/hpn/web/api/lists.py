@@ -84,15 +84,15 @@ async def part_of(
     if pending := await store.pending(versions, kind):  # before the lines: lines that are not pending have `today`
         request.app.state.todays.wake()
     try:
-        lines, following = await page_of(_wanted(query, kind, versions), query.cursor, query.limit)
+        lines, following = await page_of(_filter_of(query, kind, versions), query.cursor, query.limit)
     except ValueError as error:
         raise Problem(422, f"cursor {error}", [(("cursor",), str(error))]) from None
     since = _moment(query.deleted_since, "deleted_since")
-    gone = [] if since is None else [id for id, _ in await store.deleted(since, kind)]
-    return ListPart(lines, following, gone, pending)
+    deleted = [] if since is None else [id for id, _ in await store.deleted(since, kind)]
+    return ListPart(lines, following, deleted, pending)
 
 
-def _wanted(query: ListQuery, kind: DocumentKind | None, versions: Versions) -> LineFilter:
+def _filter_of(query: ListQuery, kind: DocumentKind | None, versions: Versions) -> LineFilter:
     same = {name: getattr(query, name) for name in ("search", "reference", "author", "selected", "sort")}
     return LineFilter(
         kind,

@@ -134,7 +134,7 @@ def _route(file: File) -> None:
     ) -> Response:
         machine, state = await _state(request, id, revision)
         before = None if file in TABLES else await _before(request, machine, state)
-        make = partial(_made, request, machine, state, before)
+        make = partial(_export_of, request, machine, state, before)
         if file in TABLES:
             return await answer_file(request, file, lang, chosen, lambda: make().document)
         if file is REPORT:
@@ -157,7 +157,7 @@ def _route_of_axis(file: File) -> None:
     ) -> Response:
         machine, state = await _state(request, id, revision)
         return await answer_file(
-            request, file, lang, chosen, lambda: _axis(_made(request, machine, state, None), number)
+            request, file, lang, chosen, lambda: _axis(_export_of(request, machine, state, None), number)
         )
 
     _add(file, of_axis, "an axis of the working copy or of a revision", "/axes/{number}", f"Axis{file.noun}")
@@ -203,7 +203,7 @@ async def _before(request: Request, machine: Machine, state: State) -> tuple[str
     return None if latest is None else (older[0].label, latest[1])
 
 
-def _made(request: Request, machine: Machine, state: State, before: tuple[str, bytes] | None) -> MachineExport:
+def _export_of(request: Request, machine: Machine, state: State, before: tuple[str, bytes] | None) -> MachineExport:
     document, line = _document(state), state.line
     label, author = (line.label, line.author) if line else ("", None)
     heading = ExportTitle(document.title or "", document.reference or "", author or document.author or "", label)
@@ -214,7 +214,7 @@ def _made(request: Request, machine: Machine, state: State, before: tuple[str, b
         link=absolute(request, f"/machines/{machine.id}" + (f"?revision={label}" if label else "")),
         heading=heading,
         created=line.created if line else None,
-        made=datetime.now(UTC),
+        moment=datetime.now(UTC),
         before=(before[0], earlier) if before and earlier else None,
     )
 

@@ -184,7 +184,7 @@ def line(record: DocumentLine, kind: type[L] = LineReply, **more: Any) -> L:  # 
     )
 
 
-def listed(record: DocumentLine, key: str) -> ListedReply:
+def line_reply(record: DocumentLine, key: str) -> ListedReply:
     """Line of the list, with its verdict by the versions of a key, if that is known."""
     today = None
     if record.today_of == key and record.today_changed is not None:
@@ -253,7 +253,7 @@ def revision(record: RevisionLine) -> RevisionReply:
     return RevisionReply(**values, created=moment(record.created), axis_count=record.axes)
 
 
-def frozen(record: RevisionLine, content: Frozen) -> FrozenReply:
+def revision_reply(record: RevisionLine, content: Frozen) -> FrozenReply:
     """Revision with its frozen content."""
     block = {name: getattr(content, name) for name in ("title", "reference", "author", "note", "common")}
     return FrozenReply(revision=revision(record), axes=tuple(map(_frozen_axis, content.axes)), **block)

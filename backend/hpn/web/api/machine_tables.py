@@ -46,9 +46,9 @@ async def draft_of_table(request: Request, body: bytes, texts: Sequence[str]) ->
 
 
 def _reading(body: bytes, texts: Sequence[str]) -> Callable[[], Any]:
-    from hpn.web.axis_tables import WANTED  # Arrow takes half a second to import
+    from hpn.web.axis_tables import BOUNDS  # Arrow takes half a second to import
 
-    return partial(read_answered, body, WANTED, texts)
+    return partial(read_answered, body, BOUNDS, texts)
 
 
 def sizing_of(reading: MachineReading, catalogue: Catalogue) -> Callable[[], Any]:

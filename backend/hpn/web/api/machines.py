@@ -21,10 +21,10 @@ from hpn.store import Change, LineFilter, Machine, MachineDraft, RevisionDraft, 
 from hpn.store.records import DocumentKind
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
+from hpn.web.api.field_names import FieldNames, field_names
 from hpn.web.api.lists import KindQuery, linked, part_of
 from hpn.web.api.machine_tables import TABLES, draft_of_table
 from hpn.web.api.replies import JSONBytes, SavedReply, encode
-from hpn.web.api.wanted import FieldNames, field_names
 from hpn.web.columns import common_of, drafts_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, content_type_of, parsed, read_body
@@ -33,12 +33,12 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
 from hpn.web.machines import (
-    answered,
+    answers_under,
     apply,
     editable,
-    gone,
     guarded,
     machine_of,
+    no_document,
     once_of,
     patched,
     require_document,
@@ -133,7 +133,7 @@ def draft_of(
     revisions: Sequence[tuple[datetime, RevisionDraft]] = (),
 ) -> MachineDraft:
     """Draft of a machine with its answers, and with revisions from elsewhere."""
-    common = document.common.sent
+    common = document.common.as_json
     return MachineDraft(
         axes=drafts_of(document.axes, common, catalogue),
         engine_version=ENGINE_VERSION,
@@ -173,12 +173,12 @@ async def list_machines(request: Request, query: Annotated[KindQuery, Query()]) 
     """
     store: Store = request.app.state.store
 
-    async def read(wanted: LineFilter, cursor: str | None, limit: int) -> tuple[list[Any], str | None]:
-        return await store.machines(cursor, limit, wanted)
+    async def read(filter: LineFilter, cursor: str | None, limit: int) -> tuple[list[Any], str | None]:
+        return await store.machines(cursor, limit, filter)
 
     part = await part_of(request, query, KINDS[query.kind], read)
     key = versions_of(request.app.state).key
-    listed = replies.MachineListReply([replies.listed(each, key) for each in part.lines], *part[1:])
+    listed = replies.MachineListReply([replies.line_reply(each, key) for each in part.lines], *part[1:])
     response = JSONBytes(encode(listed), headers={"Cache-Control": "no-cache"})
     return linked(response, request, ADDRESS, part)
 
@@ -197,21 +197,21 @@ async def read_machine(
     fields: Fields = None,
 ) -> Response:
     """The machine with its working copy. Its ETag covers title block, common values, order and set of axes."""
-    return await _reply(request, id, await _wanted(request, id, fields))
+    return await _reply(request, id, await _names_in(request, id, fields))
 
 
-async def _reply(request: Request, id: str, wanted: FieldNames | None) -> Response:
+async def _reply(request: Request, id: str, names: FieldNames | None) -> Response:
     """A machine, or some fields of it; where these are none of its axes, no axis is read."""
-    machine = await machine_of(request, id, None if wanted is None or wanted.of_each else [])
+    machine = await machine_of(request, id, None if names is None or names.of_each else [])
     body = await compute(
         request,
         "pages",
-        lambda: encode(replies.machine(machine) if wanted is None else replies.parts(machine, *wanted)),
+        lambda: encode(replies.machine(machine) if names is None else replies.parts(machine, *names)),
     )
     return JSONBytes(body, headers={"ETag": tag_of(machine), "Cache-Control": "no-cache"})
 
 
-async def _wanted(request: Request, id: str, fields: str | None) -> FieldNames | None:
+async def _names_in(request: Request, id: str, fields: str | None) -> FieldNames | None:
     """Requested fields of a machine, None for all; Problem 404 for an unknown machine, 422 for an unknown name."""
     if fields is None:
         return None
@@ -238,7 +238,7 @@ async def change_machine(request: Request, id: schemas.Id, fields: Fields = None
     If common values change, every axis is calculated again; an axis that can no longer be calculated becomes open and
     does not block the change. The reply is the machine, or the requested fields.
     """
-    wanted = await _wanted(request, id, fields)
+    names = await _names_in(request, id, fields)
     body = await read_body(request, JSON, MERGE_PATCH, maximum_bytes=MOST_BYTES)
     patch = await compute(request, "pages", parsed, MachinePatch, body, require_machine)
     catalogue: Catalogue = request.app.state.catalogue
@@ -250,7 +250,7 @@ async def change_machine(request: Request, id: schemas.Id, fields: Fields = None
 
     needs_axes = "common" in patch.model_fields_set
     await apply(request, id, make, None if needs_axes else [])
-    return await _reply(request, id, wanted)
+    return await _reply(request, id, names)
 
 
 def _change(machine: Machine, patch: MachinePatch, catalogue: Catalogue, by: str | None) -> Change:
@@ -260,11 +260,11 @@ def _change(machine: Machine, patch: MachinePatch, catalogue: Catalogue, by: str
     if "common" not in fields:
         return change
     try:
-        common = Common.model_validate(patched(common_of(machine), patch.common) or {}).sent
+        common = Common.model_validate(patched(common_of(machine), patch.common) or {}).as_json
     except (ValidationError, InputError) as error:
         raise _below_common(error) from None
     values["common"] = msgspec.json.encode(common).decode()
-    return replace(change, answered=answered(machine, common, catalogue))
+    return replace(change, answered=answers_under(machine, common, catalogue))
 
 
 def _below_common(error: ValidationError | InputError) -> Problem:
@@ -294,6 +294,6 @@ async def delete_machine(request: Request, id: schemas.Id) -> Response:
     machine = await editable(request, id, [])
     require_document(request, machine)
     version = None if request.headers.get("if-match", "*").strip() == "*" else machine.version
-    require_done(await request.app.state.store.delete(id, version, None), version, gone(id))
+    require_done(await request.app.state.store.delete(id, version, None), version, no_document(id))
     note(request, machine=id)
     return Response(status_code=204)

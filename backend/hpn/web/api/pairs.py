@@ -37,14 +37,14 @@ async def pairs(request: Request, failing: Failing = False) -> Response:
     """Ranks every allowed gear with every motor; each pair is judged as in `POST /api/v1/select`."""
     state: State = request.app.state
     body = await read_body(request)
-    wanted = await compute(request, "pages", parsed, Pairing, body)
-    motors = wanted.motors or await motors_of(request, wanted.list or "")
-    return JSONBytes(await compute(request, "pages", _reply, wanted, motors, state.catalogue, failing))
+    question = await compute(request, "pages", parsed, Pairing, body)
+    motors = question.motors or await motors_of(request, question.list or "")
+    return JSONBytes(await compute(request, "pages", _reply, question, motors, state.catalogue, failing))
 
 
-def _reply(wanted: Pairing, motors: Sequence[MotorEntry], catalogue: Catalogue, failing: bool) -> bytes:
+def _reply(question: Pairing, motors: Sequence[MotorEntry], catalogue: Catalogue, failing: bool) -> bytes:
     try:
-        return encode(pairs_of(wanted, motors, catalogue, _links(wanted.application), failing=failing))
+        return encode(pairs_of(question, motors, catalogue, _links(question.application), failing=failing))
     except InputError as error:
         raise error.below("application") from None
 

@@ -19,7 +19,7 @@ from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.conditions import etag_of
 from hpn.web.door.pools import compute
-from hpn.web.edits import kinds_in, placed
+from hpn.web.edits import kinds_in, order_axis
 from hpn.web.freezing import freeze, revision
 from hpn.web.machines import machine_of, made_before, once_of
 from hpn.web.states import catalogues_of, documents_of, states_of
@@ -83,7 +83,7 @@ async def read_revision(request: Request, id: schemas.Id, label: Label) -> Respo
     """A document as it was frozen, with its answers of that time."""
     await machine_of(request, id, [])
     line, content = await revision(request, id, label)
-    body = await compute(request, "pages", lambda: encode(replies.frozen(line, decode(content))))
+    body = await compute(request, "pages", lambda: encode(replies.revision_reply(line, decode(content))))
     return JSONBytes(body, headers={"ETag": etag_of(content), "Cache-Control": "no-cache"})
 
 
@@ -122,7 +122,7 @@ async def read_differences(
 async def read_gears(request: Request, id: schemas.Id) -> Response:
     """Gears of all axes by ordering code, with quantities and masses."""
     machine = await machine_of(request, id)
-    body = encode(gears_of((placed(axis.number, axis) for axis in machine.items), request.app.state.catalogue))
+    body = encode(gears_of((order_axis(axis.number, axis) for axis in machine.items), request.app.state.catalogue))
     return JSONBytes(body, headers={"Cache-Control": "no-cache"})
 
 

@@ -15,8 +15,8 @@ from hpn.engine.room import MOST_SAMPLES
 from hpn.engine.selection import Selection, encode, select
 from hpn.links.writer import to_link
 from hpn.web.api import schemas
+from hpn.web.api.field_names import FieldNames, field_names
 from hpn.web.api.replies import JSONBytes
-from hpn.web.api.wanted import FieldNames, field_names
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
 from hpn.web.door.pools import calculate
@@ -63,27 +63,27 @@ Fields = Annotated[
 async def select_one(request: Request, samples: Samples = 0, top: Top = None, fields: Fields = None) -> Response:
     """Evaluates every size and ratio, ranks the candidates, and gives the reason for each status."""
     state: State = request.app.state
-    wanted = None if fields is None else field_names(fields, *FIELDS)
+    names = None if fields is None else field_names(fields, *FIELDS)
     body = await read_body(request)
-    selected, reply = await calculate(request, body, _reply, body, state, samples, top, wanted)
+    selected, reply = await calculate(request, body, _reply, body, state, samples, top, names)
     state.metrics.selections(["none" if selected is None else "selected"])
     return JSONBytes(reply)
 
 
 def _reply(
-    body: bytes, state: State, samples: int, top: int | None, wanted: FieldNames | None
+    body: bytes, state: State, samples: int, top: int | None, names: FieldNames | None
 ) -> tuple[str | None, bytes]:
     application = parsed(Application, body)
     selection = select(application, state.catalogue, to_link, samples)
     answer = structs.replace(selection, candidates=selection.candidates[:top])
-    return selection.selected, encode(answer) if wanted is None else _part(answer, wanted)
+    return selection.selected, encode(answer) if names is None else _part(answer, names)
 
 
-def _part(selection: Selection, wanted: FieldNames) -> bytes:
+def _part(selection: Selection, names: FieldNames) -> bytes:
     """JSON of the selected fields of a selection and of its candidates."""
     whole: dict[str, Any] = msgspec.json.decode(encode(selection))
-    part = {name: value for name, value in whole.items() if name in wanted.names}
-    if wanted.of_each:
-        listed = [{k: value for k, value in one.items() if k in wanted.of_each} for one in whole["candidates"]]
+    part = {name: value for name, value in whole.items() if name in names.names}
+    if names.of_each:
+        listed = [{k: value for k, value in one.items() if k in names.of_each} for one in whole["candidates"]]
         part["candidates"] = listed
     return msgspec.json.encode(part)

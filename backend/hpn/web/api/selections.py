@@ -108,8 +108,8 @@ async def save_selection(request: Request) -> Response:
 
 
 def _draft(body: bytes, catalogue: Catalogue, key: str | None, owner: str | None) -> Draft:
-    wanted = parsed(SaveRequest, body)
-    return draft_in(catalogue, wanted.application, wanted, key, owner)
+    save = parsed(SaveRequest, body)
+    return draft_in(catalogue, save.application, save, key, owner)
 
 
 def draft_in(
@@ -160,8 +160,8 @@ async def list_selections(request: Request, query: Annotated[ListQuery, Query()]
     """
     store: Store = request.app.state.store
 
-    async def read(wanted: LineFilter, cursor: str | None, limit: int) -> tuple[list[Any], str | None]:
-        page = await store.page(cursor=cursor, limit=limit, wanted=wanted)
+    async def read(filter: LineFilter, cursor: str | None, limit: int) -> tuple[list[Any], str | None]:
+        page = await store.page(cursor=cursor, limit=limit, filter=filter)
         return page.selections, page.next_cursor
 
     part = await part_of(request, query, "selection", read)

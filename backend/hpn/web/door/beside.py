@@ -207,7 +207,7 @@ def main(bounds: Bounds | None) -> None:
     os.dup2(2, 1)
     while calls.peek(1):
         signal.setitimer(signal.ITIMER_REAL, bounds.seconds if bounds else 0)  # nothing here holds up the signal
-        is_done, result = _done(calls, is_bounded=bounds is not None)
+        is_done, result = _answer_call(calls, is_bounded=bounds is not None)
         has_grown = bounds is not None and _peak_bytes() > KEPT_SHARE * bounds.memory_bytes
         CallResult(is_done, has_grown, result).send(answers)
         signal.setitimer(signal.ITIMER_REAL, 0)
@@ -220,7 +220,7 @@ def _end_with_parent(parent: int) -> None:
     os._exit(1)
 
 
-def _done(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, msgspec.Raw]:
+def _answer_call(calls: IO[bytes], *, is_bounded: bool) -> tuple[bool, msgspec.Raw]:
     """True and the next call's result, or False and the traceback of its error."""
     try:
         result = pickle.load(calls)()

@@ -40,16 +40,16 @@ async def read_body(request: Request, *content_types: str, maximum_bytes: int = 
     limit of the settings), 408 for a body that has not arrived within the time of the settings.
     """
     settings: Settings = request.app.state.settings
-    wanted, body = content_types or (JSON,), bytearray()
-    if content_type_of(request) not in wanted:
-        raise wrong_type(request, " or ".join(wanted))
+    accepted_types, body = content_types or (JSON,), bytearray()
+    if content_type_of(request) not in accepted_types:
+        raise wrong_type(request, " or ".join(accepted_types))
 
     async def keep(piece: bytes) -> None:
         body.extend(piece)
 
     most, seconds = maximum_bytes or settings.maximum_body_bytes, settings.body_seconds
     await pass_body(request, keep, maximum_bytes=most, pause_seconds=seconds, seconds=seconds)
-    return bytes(body).removeprefix(codecs.BOM_UTF8 if JSON in wanted else b"")
+    return bytes(body).removeprefix(codecs.BOM_UTF8 if JSON in accepted_types else b"")
 
 
 async def pass_body(
@@ -105,10 +105,10 @@ def _too_large(request: Request, maximum_bytes: int) -> Problem:
     return problem
 
 
-def wrong_type(request: Request, wanted: str) -> Problem:
+def wrong_type(request: Request, accepted_types: str) -> Problem:
     """415."""
     type = content_type_of(request) or "nothing"
-    return Problem(415, f"send the body as {wanted} (the Content-Type header says {type})")
+    return Problem(415, f"send the body as {accepted_types} (the Content-Type header says {type})")
 
 
 def parsed(model: type[M], text: AnyStr, bound: Callable[[AnyStr], None] | None = None) -> M:

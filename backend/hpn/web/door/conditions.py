@@ -45,10 +45,10 @@ def other_state() -> Problem:
     return Problem(412, "If-Match names another state of this selection; read it again")
 
 
-def require_done(done: bool, version: int | None, gone: Problem, overtaken: Problem | None = None) -> None:
+def require_done(is_done: bool, version: int | None, missing: Problem, overtaken: Problem | None = None) -> None:
     """Raise the reason of a write that failed: `gone` if any version was acceptable, else `overtaken` or 412."""
-    if not done:
-        raise gone if version is None else overtaken or other_state()
+    if not is_done:
+        raise missing if version is None else overtaken or other_state()
 
 
 def _lists(header: str, etag: str, *, weakly: bool) -> bool:

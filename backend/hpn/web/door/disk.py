@@ -13,7 +13,7 @@ class Disk:
 
     def __init__(self, total: int) -> None:
         self.total = total
-        self.taken = 0
+        self.in_use = 0
 
     @contextmanager
     def share(self) -> Iterator["SpoolShare"]:
@@ -30,19 +30,19 @@ class SpoolShare:
 
     def __init__(self, disk: Disk) -> None:
         self._disk = disk
-        self.taken = 0
+        self.in_use = 0
 
     def take(self, count: int) -> None:
         """Set more aside; Problem 413 for more than the total, 503 while other requests hold too much of it."""
-        if self.taken + count > self._disk.total:
+        if self.in_use + count > self._disk.total:
             raise Problem(413, f"more than {self._disk.total} bytes can’t be set aside; send less at once")
-        if self._disk.taken + count > self._disk.total:
-            text = f"other requests have set {self._disk.taken} of {self._disk.total} bytes aside; try again later"
+        if self._disk.in_use + count > self._disk.total:
+            text = f"other requests have set {self._disk.in_use} of {self._disk.total} bytes aside; try again later"
             raise Problem.later(text, RETRY_SECONDS)
-        self.taken += count
-        self._disk.taken += count
+        self.in_use += count
+        self._disk.in_use += count
 
     def give_back(self) -> None:
         """Give all bytes back."""
-        self._disk.taken -= self.taken
-        self.taken = 0
+        self._disk.in_use -= self.in_use
+        self.in_use = 0

@@ -15,7 +15,7 @@ from hpn.web.door.problems import mistake
 QUIET = frozenset({"/healthz", "/readyz", "/metrics"})
 """Routes that are asked every few seconds; logged at level debug."""
 
-GONE = 499
+CLIENT_CLOSED = 499
 """Status by which proxies, too, count a request whose caller left before the answer."""
 
 STYLES_OF_PLOTLY = (
@@ -90,14 +90,14 @@ class Observation:
             return
         start, status, id = time.perf_counter(), 0, request_id(Headers(scope=scope))
         token = REQUEST.set(id)
-        added = {**SECURITY_HEADERS, "X-Request-ID": id}
-        scope.setdefault("state", {})["response_headers"] = added
+        headers = {**SECURITY_HEADERS, "X-Request-ID": id}
+        scope.setdefault("state", {})["response_headers"] = headers
 
         async def observed(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                MutableHeaders(scope=message).update(added)
+                MutableHeaders(scope=message).update(headers)
             await send(message)
 
         try:
@@ -108,7 +108,7 @@ class Observation:
             if status == 0:
                 await mistake().response()(scope, receive, observed)
         finally:
-            self._note(scope, status or GONE, time.perf_counter() - start)
+            self._note(scope, status or CLIENT_CLOSED, time.perf_counter() - start)
             REQUEST.reset(token)
 
     def _note(self, scope: Scope, status: int, seconds: float) -> None:

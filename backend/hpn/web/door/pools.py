@@ -18,7 +18,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from hpn.web.door.beside import Bounds, EndedError, ProcessBeside
-from hpn.web.door.observation import GONE
+from hpn.web.door.observation import CLIENT_CLOSED
 from hpn.web.door.problems import Problem
 from hpn.words.wording import N_, Sentence
 
@@ -74,19 +74,19 @@ class Pool:
         self.beside = self._processes[0]
         self.turn = asyncio.Semaphore(places.workers)  # of work done in the processes, one caller per worker
         self._most = places.workers + places.waiting
-        self.taken = 0
+        self.in_use = 0
 
     @contextmanager
     def place(self) -> Iterator[None]:
         """Hold a place; Problem 503 if all are taken."""
-        if self.taken >= self._most:
+        if self.in_use >= self._most:
             text = N_("too much of this kind is being computed; try again in {seconds} s")
             raise Problem.later(Sentence(text, {"seconds": str(RETRY_SECONDS)}), RETRY_SECONDS)
-        self.taken += 1
+        self.in_use += 1
         try:
             yield
         finally:
-            self.taken -= 1
+            self.in_use -= 1
 
     async def run(self, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Result of work on a worker. A cancelled caller leaves the queue."""
@@ -191,10 +191,10 @@ async def while_present(request: Request, work: Coroutine[Any, Any, T]) -> T:
     try:
         await asyncio.wait({working}, timeout=PATIENCE_SECONDS)  # most work needs no watch
         if not working.done():
-            leaving = asyncio.create_task(_left(request))
+            leaving = asyncio.create_task(_departure(request))
             await asyncio.wait({working, leaving}, return_when=asyncio.FIRST_COMPLETED)
         if not working.done():
-            raise Problem(GONE, "the client has left")
+            raise Problem(CLIENT_CLOSED, "the client has left")
         return working.result()
     finally:
         working.cancel()
@@ -203,6 +203,6 @@ async def while_present(request: Request, work: Coroutine[Any, Any, T]) -> T:
         await asyncio.wait({working})  # so that processes it has called end, too
 
 
-async def _left(request: Request) -> None:
+async def _departure(request: Request) -> None:
     while (await request.receive())["type"] != "http.disconnect":
         pass

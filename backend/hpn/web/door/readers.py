@@ -82,8 +82,8 @@ def accepted_language(header: str) -> str:
         weight = parameter.replace(" ", "").removeprefix("q=") or "1"
         if weight.strip("0.") and weight.replace(".", "", 1).isdecimal():
             weighted.append((-float(weight), place, tag.strip().replace("-", "_")))
-    wanted = [tag for _, _, tag in sorted(weighted) if tag]
-    return negotiate_locale(wanted, LANGUAGES) or "en"
+    tags = [tag for _, _, tag in sorted(weighted) if tag]
+    return negotiate_locale(tags, LANGUAGES) or "en"
 
 
 def _cookies(header: str) -> dict[str, str]:

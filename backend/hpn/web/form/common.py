@@ -139,7 +139,7 @@ def nested(values: Values) -> Json:
     return document
 
 
-def changed(before: Values, after: Values) -> dict[str, Any]:
+def changes(before: Values, after: Values) -> dict[str, Any]:
     """Changed values by path, None for a removed one; a choice left at its default does not count as changed."""
     values: dict[str, Any] = {}
     defaults = {path: next(iter(symbol.choices), None) for path, symbol in BY_SYMBOL.values()}

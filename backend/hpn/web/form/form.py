@@ -52,7 +52,7 @@ class Form:
     has_tolerances: bool = False
     is_exact: bool = False
     asides: tuple[str, ...] = ()
-    shown: frozenset[str] = frozenset()
+    groups: frozenset[str] = frozenset()
     gear: str = ""
     pins: tuple[str, ...] = ()
     focus: str | None = None
@@ -108,12 +108,12 @@ class Form:
     @property
     def columns(self) -> list[Symbol]:
         """Columns of the table of phases."""
-        return table_columns(PHASE_SYMBOLS, self.shown)
+        return table_columns(PHASE_SYMBOLS, self.groups)
 
     @property
     def move_columns(self) -> list[Symbol]:
         """Columns of the table of moves."""
-        return table_columns(move_symbols(self.mechanism), self.shown)
+        return table_columns(move_symbols(self.mechanism), self.groups)
 
     def row(self, problem: FieldProblem) -> str:
         """Number of a problem's row, with the row's name if it has one."""
@@ -124,7 +124,7 @@ class Form:
     @property
     def text(self) -> str:
         """Duty cycle as text, one phase per line; as typed if it was typed as text."""
-        columns = PHASE_SYMBOLS[: next((width for group, width in WIDTHS.items() if group in self.shown), 3)]
+        columns = PHASE_SYMBOLS[: next((width for group, width in WIDTHS.items() if group in self.groups), 3)]
         lines = ("\t".join(row.get(symbol.name, "") for symbol in columns) for row in self.rows)
         return "\n".join(lines) if self.typed is None else self.typed
 

@@ -33,7 +33,7 @@ class BodyTable:
     sum: BodySum | None = None
 
     @property
-    def given(self) -> bool:
+    def is_filled(self) -> bool:
         """True if a row is filled in."""
         return any(map(filled, self.rows))
 

@@ -35,8 +35,8 @@ async def query_of(request: Request, *options: str) -> str:
         query: bytes = request.scope["query_string"]
         return query.decode("latin-1")
     fields = await read_fields(request)
-    posted = "".join(f"&{name}={fields[name]}" for name in options if name in fields)
-    return query_part(fields.get("link", "")) + posted
+    options_query = "".join(f"&{name}={fields[name]}" for name in options if name in fields)
+    return query_part(fields.get("link", "")) + options_query
 
 
 def query_part(link: str) -> str:

@@ -14,13 +14,13 @@ from hpn.words.wording import N_, Sentence, Typed
 LIMITS = frozenset(("nm", "Tm", "Tmn", "nmr", "Jr", "bl", "m", "L", "pe", "pem", "u", "eta", "xc"))
 """Inputs whose smaller value is the stricter requirement: limits of motor, user or drawing."""
 
-_TAKEN = re.compile(r"(?:f-(?P<name>\w+)|(?P<column>\w+)-(?P<row>[0-9]{1,5})):(?P<text>.{1,60})")
+_OFFER = re.compile(r"(?:f-(?P<name>\w+)|(?P<column>\w+)-(?P<row>[0-9]{1,5})):(?P<text>.{1,60})")
 """Value of a button: the element for the number, and the number, as in `f-Lb:20000`."""
 
 
 def take(query: SortedQuery, offer: str) -> None:
     """Replace a text by the number of a button."""
-    if match := _TAKEN.fullmatch(offer):
+    if match := _OFFER.fullmatch(offer):
         name, row = match["name"] or match["column"], int(match["row"] or 0)
         text = query.in_wire_units(name, match["text"])
         table = query.table_of(name)

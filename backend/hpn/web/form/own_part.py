@@ -107,8 +107,8 @@ def carried_over(now: Pairs, then: Pairs, own: Pairs, inherited: Collection[str]
             continue
         texts = mine.get(name, ()) if before.get(name) == after.get(name) else after.get(name, ())
         pairs += [(name, text) for text in texts]
-    gone = [name for name in before if name in inherited and name not in after and name not in CYCLE_NAMES]
-    return pairs + [("wo", name) for name in gone if name not in mine.get("wo", ())]
+    left_out = [name for name in before if name in inherited and name not in after and name not in CYCLE_NAMES]
+    return pairs + [("wo", name) for name in left_out if name not in mine.get("wo", ())]
 
 
 def grouped(pairs: Pairs) -> dict[str, list[str]]:

@@ -239,16 +239,16 @@ class SortedQuery:
 
     def _show(self) -> None:
         """Show the optional columns that are used."""
-        self.shown = groups_of({**self.phases.counts, **self.moves.counts})
+        self.groups = groups_of({**self.phases.counts, **self.moves.counts})
         if any(row[EVEN].strip() for row in self.moves.rows):
-            self.shown.add(EVEN)
+            self.groups.add(EVEN)
         self.show_columns()
 
     def show_columns(self) -> None:
         """Give the tables the columns of the shown groups."""
         apart = SHARED if self.has_motion else ()
-        self.phases.show(self._with_tolerances(shown_columns(PHASE_BY_NAME, self.shown.difference(apart))))
-        self.moves.show(self._with_tolerances(shown_columns(MOVE_BY_NAME, self.shown)))
+        self.phases.show(self._with_tolerances(shown_columns(PHASE_BY_NAME, self.groups.difference(apart))))
+        self.moves.show(self._with_tolerances(shown_columns(MOVE_BY_NAME, self.groups)))
 
     def _with_tolerances(self, columns: list[str]) -> list[str]:
         own = [f"{ROW}{name}" for name in columns if f"{ROW}{name}" in OF_ROW]
@@ -278,7 +278,7 @@ class SortedQuery:
 
     def toggle(self, group: str) -> None:
         """Show or hide a group of optional columns."""
-        self.shown ^= {group}
+        self.groups ^= {group}
         self.show_columns()
 
     def toggle_tolerances(self) -> None:
@@ -383,8 +383,10 @@ def _unequal(table: FormTable, required: Sequence[str]) -> Iterable[FieldProblem
 def _beside_motion(phases: FormTable) -> Iterable[FieldProblem]:
     """Yield a problem for phases given beside a motion; blank ones, as a form submits them, count as absent."""
     for name in phases.counts:
-        if filled := [k for k, row in enumerate(phases.rows) if row.get(name, "").strip()]:
-            yield FieldProblem(name, filled[0], Sentence(N_("given beside a motion: give either phases or a motion")))
+        if filled_rows := [k for k, row in enumerate(phases.rows) if row.get(name, "").strip()]:
+            yield FieldProblem(
+                name, filled_rows[0], Sentence(N_("given beside a motion: give either phases or a motion"))
+            )
             return
 
 

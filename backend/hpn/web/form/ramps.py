@@ -18,13 +18,13 @@ def press(query: SortedQuery, unit: str, application_of: Callable[[SortedQuery],
     """Show or hide the pair of columns; with a `unit` (time or acceleration) convert all ramps to it."""
     if unit in _GROUPS:
         application = application_of(query)
-        query.shown |= {*_GROUPS.values()}
+        query.groups |= {*_GROUPS.values()}
         query.show_columns()
         _turn(query, unit, application)
-    elif query.shown & {*_GROUPS.values()}:
-        query.shown -= {*_GROUPS.values()}
+    elif query.groups & {*_GROUPS.values()}:
+        query.groups -= {*_GROUPS.values()}
     else:
-        query.shown.add(_GROUPS["acceleration" if EVEN in query.shown else "time"])
+        query.groups.add(_GROUPS["acceleration" if EVEN in query.groups else "time"])
     query.show_columns()
 
 
@@ -41,8 +41,8 @@ def _turn(query: SortedQuery, unit: str, application: Application | None) -> Non
             value = move.followed.get(fields[to])
             if move.profile in _RAMPED and value is not None and row[name].strip():
                 row[name], row[to] = "", f"{value:.12g}"
-    left = {name for row in query.moves.rows for name in COLUMNS[other] if row[name].strip()}
-    query.shown -= {EVEN, _GROUPS[other]}
-    query.shown |= {EVEN} & left
-    if left.intersection(OPTIONAL[_GROUPS[other]]):
-        query.shown.add(_GROUPS[other])
+    filled_columns = {name for row in query.moves.rows for name in COLUMNS[other] if row[name].strip()}
+    query.groups -= {EVEN, _GROUPS[other]}
+    query.groups |= {EVEN} & filled_columns
+    if filled_columns.intersection(OPTIONAL[_GROUPS[other]]):
+        query.groups.add(_GROUPS[other])

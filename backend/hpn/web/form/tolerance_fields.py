@@ -39,7 +39,7 @@ OF_COLUMN: Mapping[str, str] = {
 
 INPUT_OF: Mapping[str, str] = {**OF_COLUMN, **OF_ROW}
 
-ASKED = (
+TOLERANCE_INPUTS = (
     "u",
     "uw",
     "Lh",
@@ -62,7 +62,7 @@ ASKED = (
 )
 """Requirements on the gear and data of the motor: they get a field only if they have a tolerance already."""
 
-OFFERED = frozenset(name for name in BY_NAME if name not in ASKED and f"{COLUMN}{name}" in OF_COLUMN)
+OFFERED = frozenset(name for name in BY_NAME if name not in TOLERANCE_INPUTS and f"{COLUMN}{name}" in OF_COLUMN)
 """Inputs that always have a field for their tolerance."""
 
 _LONGEST = 80
@@ -163,7 +163,7 @@ def place(
     single: dict[str, list[str]],
 ) -> list[str]:
     """Put tolerances of a link into the fields of the form's inputs; return those that have no field."""
-    left = []
+    remaining = []
     for text in texts:
         match = WRITTEN.fullmatch(text.strip()) if len(text) <= LONGEST else None
         symbol, row = (match[1], match[2]) if match else ("", None)
@@ -172,8 +172,8 @@ def place(
         if row is None and name in OF_COLUMN and symbol in inputs and not single.get(name):
             single[name], scalars[name] = [sides], sides
         elif not (row is not None and name in OF_ROW and _in_row(table, int(row) - 1, name, sides)):
-            left.append(text)
-    return left
+            remaining.append(text)
+    return remaining
 
 
 def _in_row(table: FormTable, k: int, name: str, sides: Sides) -> bool:

@@ -42,7 +42,7 @@ def way_of(pairs: Pairs) -> str:
     return code if code in TYPES else PHASES
 
 
-def switch(current: SortedQuery, wanted: str) -> None:
+def switch(current: SortedQuery, way: str) -> None:
     """Switch to another way: restore its inputs, put the present ones aside."""
     own = current.cycle()
     queries = {way_of(query): query for query in map(_pairs_of, current.asides)}
@@ -52,10 +52,10 @@ def switch(current: SortedQuery, wanted: str) -> None:
         own = [pair for pair in own if pair[0] not in _OF_PHASES_ALONE]
         if _says_anything(stray):
             queries[PHASES] = stray
-    if wanted == MOTION:
-        wanted = here if here != PHASES else next((way for way in reversed(queries) if way != PHASES), TYPES[0])
-    if wanted != here and wanted in START:
-        before, own = own, list(queries.pop(wanted, []) or _begun(own, here, wanted))
+    if way == MOTION:
+        way = here if here != PHASES else next((other for other in reversed(queries) if other != PHASES), TYPES[0])
+    if way != here and way in START:
+        before, own = own, list(queries.pop(way, []) or _start(own, here, way))
         queries[here] = before
     current.put_cycle(own)
     current.asides = [_written(query) for query in queries.values() if _says_anything(query)]
@@ -65,12 +65,12 @@ def _says_anything(query: Pairs) -> bool:
     return any(text.strip() for name, text in query if name not in ("mech", "mv"))
 
 
-def _begun(own: Pairs, here: str, wanted: str) -> Pairs:
+def _start(own: Pairs, here: str, way: str) -> Pairs:
     """Pairs of a way that is new: inputs that both mechanisms have are kept, all others are blank."""
-    if here in CLASSES and wanted in CLASSES:
-        others = {symbol.name for symbol in mechanism_symbols(here)} - {s.name for s in mechanism_symbols(wanted)}
-        return [(name, wanted if name == "mech" else text) for name, text in own if name not in others]
-    return parse_qsl(START[wanted], keep_blank_values=True)
+    if here in CLASSES and way in CLASSES:
+        others = {symbol.name for symbol in mechanism_symbols(here)} - {s.name for s in mechanism_symbols(way)}
+        return [(name, way if name == "mech" else text) for name, text in own if name not in others]
+    return parse_qsl(START[way], keep_blank_values=True)
 
 
 def take_over(current: SortedQuery, application: Application | None) -> bool:

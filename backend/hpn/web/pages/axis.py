@@ -34,16 +34,16 @@ REASON = "axis_refused.html"
 @or_reason(REASON)
 async def show_axis(request: Request) -> Response:
     """Page of an axis in the workbench with the inputs of the query; without a query as stored."""
-    return await _shown(request, pairs_of(request.url.query))
+    return await _axis_page(request, pairs_of(request.url.query))
 
 
 @or_reason(REASON)
 async def show_posted_axis(request: Request) -> Response:
     """Page of an axis with the inputs of a posted form, which may be too long for an address; saves nothing."""
-    return await _shown(request, pairs_of(await read_form(request)))
+    return await _axis_page(request, pairs_of(await read_form(request)))
 
 
-async def _shown(request: Request, pairs: Pairs) -> Response:
+async def _axis_page(request: Request, pairs: Pairs) -> Response:
     machine, axis = await axis_of(request, request.path_params["id"], number_of(request))
     request.app.state.gate.require_key_to_edit(request, machine.owner)
     around = await neighbours(request, machine, axis)
@@ -93,20 +93,20 @@ async def save_axis(request: Request) -> Response:
     require_same_origin(request)
     body = await read_form(request)
     try:
-        pairs = _posted(body)
-        saved = await _saved(request, pairs)
-        return saved or await _saved(request, pairs) or await _shown(request, pairs)
+        pairs = _pairs_of_form(body)
+        response = await _save_form(request, pairs)
+        return response or await _save_form(request, pairs) or await _axis_page(request, pairs)
     except (Problem, StoreUnavailableError) as error:
         return reason(request, REASON, error)
 
 
-async def _saved(request: Request, pairs: Pairs) -> Response | None:
+async def _save_form(request: Request, pairs: Pairs) -> Response | None:
     """Answer to a form that saves; None if somebody else saved the axis at the same moment."""
     machine, axis = await axis_of(request, request.path_params["id"], number_of(request))
     around = await neighbours(request, machine, axis)
     form, view, own = await compute(request, "pages", _own, request, machine, axis, around, pairs)
     if form.problems:
-        return await _shown(request, pairs)
+        return await _axis_page(request, pairs)
     if view.overtaken and view.typed != stored_pairs(axis, request.app.state.catalogue):
         catalogue = request.app.state.catalogue
         return await compute(
@@ -124,7 +124,7 @@ async def _saved(request: Request, pairs: Pairs) -> Response | None:
     return RedirectResponse(view.place, 303)
 
 
-def _posted(body: bytes) -> Pairs:
+def _pairs_of_form(body: bytes) -> Pairs:
     """Fields of the form; `link` adds those of an address that the form itself lacks."""
     fields = pairs_of(body)
     own = [(name, text) for name, text in fields if name not in ("link", "once")]
@@ -139,7 +139,7 @@ def _own(
     """Form, axis, and the axis's own values to save; no values for a form with problems."""
     catalogue: Catalogue = request.app.state.catalogue
     form, view = view_of(machine, axis, neighbours, pairs, catalogue)
-    form, answer = calculator.answered(form, catalogue, view)
+    form, answer = calculator.form_and_answer(form, catalogue, view)
     if form.problems:
         return form, view, {}
     code = None

@@ -22,15 +22,15 @@ _SPECIAL = {WITHOUT: N_("Without the machine’s value"), TOLERANCE: N_("Toleran
 
 @dataclass(frozen=True, slots=True)
 class InputConflict:
-    """Input with its three texts, blank if not given; `asked` if both editors have changed it."""
+    """Input with its three texts, blank if not given; `is_open` if both editors have changed it."""
 
     name: str
     row: int | None
     unit: str
-    opened: str
+    before: str
     theirs: str
     yours: str
-    asked: bool
+    is_open: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,14 +78,14 @@ def _lines(opened: Pairs, theirs: Pairs, yours: Pairs) -> tuple[InputConflict, .
         if len(set(texts)) == 1:
             continue
         of_row = name in PHASE_BY_NAME or name in MOVE_BY_NAME
-        before, there, here = (_shown(name, text, units.get(name, "")) for text in texts)
-        asked = bool(opened) and texts[0] not in texts[1:] and texts[1] != texts[2]
+        before, there, here = (_text_of(name, text, units.get(name, "")) for text in texts)
+        is_open = bool(opened) and texts[0] not in texts[1:] and texts[1] != texts[2]
         label = _SPECIAL.get(name) or NAMES.get(name, name)
-        lines.append(InputConflict(label, k + 1 if of_row else None, units.get(name, ""), before, there, here, asked))
+        lines.append(InputConflict(label, k + 1 if of_row else None, units.get(name, ""), before, there, here, is_open))
     return tuple(lines)
 
 
-def _shown(name: str, text: str, unit: str) -> str:
+def _text_of(name: str, text: str, unit: str) -> str:
     reader = current()
     if name == WITHOUT and text in NAMES:
         return reader.text(NAMES[text])

@@ -207,10 +207,10 @@ def stored_pairs(axis: SavedAxis, catalogue: Catalogue) -> tuple[tuple[str, str]
 def _state(
     own: Pairs, without: Sequence[str], labels: Mapping[str, str], chosen: Mapping[str, str]
 ) -> tuple[tuple[str, str], ...]:
-    left = [(WITHOUT, name) for name in sorted(without)]
+    pairs_left_out = [(WITHOUT, name) for name in sorted(without)]
     named = [(name, labels[name]) for name in LABELS if labels[name]]
     ordered = [(name, chosen[name]) for name in CHOSEN if chosen.get(name)]
-    return (*own, *left, *named, *ordered)
+    return (*own, *pairs_left_out, *named, *ordered)
 
 
 def view_of(
@@ -240,7 +240,7 @@ def view_of(
     form = replace(form, focus=focus or form.focus, problems=(*form.problems, *_faults(labels)))
     chosen = {"gear": form.gear, **_ordered(form, catalogue)}
     version = int(texts[VERSION]) if re.fullmatch(r"[0-9]{1,9}", texts.get(VERSION, "")) else axis.version
-    opened = stored if version == axis.version else _opened(texts.get(OPENED, ""))
+    opened = stored if version == axis.version else _pairs_in(texts.get(OPENED, ""))
     typed = _state(pairs_of_own(own), without, labels, chosen)
     return form, AxisView(machine, axis, neighbours, labels, own, resolved, without, typed, opened, version)
 
@@ -255,7 +255,7 @@ def _path_of(name: str) -> str | None:
     return COMMON_NAMES.get(name) or (name if name not in COMMON and is_common(name) else None)
 
 
-def _opened(text: str) -> tuple[tuple[str, str], ...] | None:
+def _pairs_in(text: str) -> tuple[tuple[str, str], ...] | None:
     return tuple(parse_qsl(text, keep_blank_values=True, max_num_fields=None)) or None
 
 

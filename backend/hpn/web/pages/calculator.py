@@ -124,10 +124,10 @@ def respond(request: Request, form: Form, *, first: bool = False, axis: AxisView
     The form may belong to an axis of a machine.
     """
     catalogue: Catalogue = request.app.state.catalogue
-    form, answer = answered(form, catalogue, axis)
+    form, answer = form_and_answer(form, catalogue, axis)
     changes = "hx-request" in request.headers
     # True if the address contains everything that the page does.
-    alone = not (form.focus or form.asides or form.bodies.given or (form.has_tolerances and form.is_exact))
+    alone = not (form.focus or form.asides or form.bodies.is_filled or (form.has_tolerances and form.is_exact))
     if answer and WRITTEN in request.query_params and not changes and alone:
         own = answer.condition.tail if form.condition else ""
         return RedirectResponse(
@@ -153,7 +153,7 @@ def read_query(query: bytes) -> Form:
     return link_reader.parse(pairs_of(text))
 
 
-def answered(form: Form, catalogue: Catalogue, axis: AxisView | None = None) -> tuple[Form, LiveResult | None]:
+def form_and_answer(form: Form, catalogue: Catalogue, axis: AxisView | None = None) -> tuple[Form, LiveResult | None]:
     """Form and its answer; without an answer the form has problems, or is blank."""
     if form.gear and catalogue.find(form.gear) is None:
         unknown = Sentence(N_("{gear} is not a gear of the catalogue"), {"gear": form.gear[:40]})
@@ -184,7 +184,7 @@ def _answer(application: Application, form: Form, catalogue: Catalogue, axis: Ax
         selection=selection,
         application=application,
         chosen=everything[gear.designation],
-        asked=bool(form.gear),
+        is_chosen_gear=bool(form.gear),
         catalogue=catalogue,
         link=link,
         example=axis is None and application == Application.worked_example(),

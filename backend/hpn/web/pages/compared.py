@@ -53,7 +53,7 @@ async def compare_selections(request: Request) -> Response:
         return RedirectResponse(onward("/selections/compare", a=marked[0], b=marked[1]), 303)
     ids = [query.get("a", ""), query.get("b", "")]
     if marked or not all(ids):
-        return await _rendered(request, 422, {"missing": [], "sides": [], "marked": len(marked)})
+        return await _page(request, 422, {"missing": [], "sides": [], "marked": len(marked)})
     sides: list[tuple[SavedSelection, Catalogue | None]] = []
     missing = []
     for place, id in zip("AB", ids, strict=True):
@@ -62,9 +62,9 @@ async def compare_selections(request: Request) -> Response:
         except Problem:
             missing.append(place)
     if missing:
-        left = [saved for saved, _ in sides]
-        return await _rendered(request, 404, {"missing": missing, "sides": [], "left": left, "marked": 2})
-    return await _rendered(request, 200, {"missing": [], "found": sides})
+        sides_saved = [saved for saved, _ in sides]
+        return await _page(request, 404, {"missing": missing, "sides": [], "left": sides_saved, "marked": 2})
+    return await _page(request, 200, {"missing": [], "pair": sides})
 
 
 def _side(saved: SavedSelection, catalogue: Catalogue | None) -> SavedSide:
@@ -104,9 +104,9 @@ def _first(rows: Iterable[NumberedRow]) -> list[NumberedRow]:
     return list(islice(rows, MOST_ROWS + 1))
 
 
-async def _rendered(request: Request, status: int, values: dict[str, Any]) -> Response:
+async def _page(request: Request, status: int, values: dict[str, Any]) -> Response:
     def work() -> Response:
-        compared = _compared(*(_side(*one) for one in values["found"])) if "found" in values else {}
+        compared = _compared(*(_side(*one) for one in values["pair"])) if "pair" in values else {}
         return page(request, "compared.html", status, **values | compared)
 
     return await compute(request, "pages", work)

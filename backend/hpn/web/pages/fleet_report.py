@@ -17,7 +17,7 @@ from hpn.links.writer import to_link
 from hpn.web.door.access import MAXIMUM_QUERY_BYTES
 from hpn.web.door.visit import VISIT, Visit
 from hpn.web.pages.assets import DIST, Assets
-from hpn.web.pages.fleet_view import SHOWN, FleetView, by_need, foremost, weights_of
+from hpn.web.pages.fleet_view import COLUMNS, FleetView, by_need, foremost, weights_of
 from hpn.web.pages.templates import environment
 from hpn.words.reader import Reader
 from hpn.words.titles import faults_of
@@ -47,7 +47,7 @@ def _sentence(reader: Reader, **values: Any) -> str:
     return (
         _environment()
         .get_template("fleet_report.html")
-        .render(values, shown=SHOWN, style=_inlined(STYLE), script=_inlined(SCRIPT), engine_version=ENGINE_VERSION)
+        .render(values, columns=COLUMNS, style=_inlined(STYLE), script=_inlined(SCRIPT), engine_version=ENGINE_VERSION)
     )
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:  # importing Arrow takes half a second, and no other page need
     from hpn.fleet.listing import AxisRow
     from hpn.fleet.summary import AxisCounts
 
-SHOWN = {
+COLUMNS = {
     "": N_("all axes"),
     "selected": N_("with a gear"),
     "unsuitable": N_("no gear suits"),

@@ -12,11 +12,11 @@ from hpn.words.wording import Sentence
 
 @dataclass(frozen=True)
 class MapCell:
-    """Gear in the map of sizes and ratios; `asked` is True if the required sizes and ratios include it."""
+    """Gear in the map of sizes and ratios; `is_required` is True if the required sizes and ratios include it."""
 
     gear: Gear
     candidate: Candidate
-    asked: bool
+    is_required: bool
 
     @property
     def level(self) -> str:

@@ -35,7 +35,7 @@ from hpn.web.pages.explanations import reads_pages
 from hpn.web.pages.machine_editing import OF_MANY, Editing, opened_common
 from hpn.web.pages.machine_rows import row_details
 from hpn.web.pages.machine_since import Since, since_of
-from hpn.web.pages.machine_view import ADDRESS, REASON, SHOWN, Chosen, MachineView
+from hpn.web.pages.machine_view import ADDRESS, FILTERS, REASON, MachineView, RowChoice
 from hpn.web.pages.rendering import or_reason, page, reason
 from hpn.web.pages.revisions_view import next_revision
 from hpn.web.pages.saved_list import changed_since, names_of, version_of
@@ -56,7 +56,7 @@ OF_WORST_CASE = ("uw", "ot")
 """Common values for the judgement of gears over tolerances; the page shows them beside the tolerances."""
 
 SAVED_MEANWHILE = N_("This machine has since been saved under other names. Open it again, then rename it.")
-GONE = N_("There is no such machine. An unsaved machine is kept for a day.")
+NO_MACHINE = N_("There is no such machine. An unsaved machine is kept for a day.")
 
 
 # --- The page of a result ---------------------------------------------------------------------------------------------
@@ -87,18 +87,18 @@ async def show(request: Request) -> Response:
 
     If a key is needed for changes, `edit` is the step that asks for it.
     """
-    saved = await _found(request)
+    saved = await _machine_of(request)
     request.app.state.gate.require_key_to_edit(request, saved.owner)
     if label := request.query_params.get("revision"):
-        return await _frozen(request, saved, label)
+        return await _revision_page(request, saved, label)
     editing = opened_common(saved) if request.query_params.get("edit") == "common" else Editing()
-    return await shown(request, saved, 200, EMPTY, editing)
+    return await machine_page(request, saved, 200, EMPTY, editing)
 
 
-async def shown(request: Request, saved: Machine, status: int, form: TitleForm, editing: Editing) -> Response:
+async def machine_page(request: Request, saved: Machine, status: int, form: TitleForm, editing: Editing) -> Response:
     """Page of a machine with the form that saves it, and with a change that is being edited."""
     latest = await request.app.state.store.revisions(saved.id) if saved.revisions else []
-    view = MachineView(saved, request.app.state.catalogue, Chosen.of(request.query_params))
+    view = MachineView(saved, request.app.state.catalogue, RowChoice.of(request.query_params))
     today = await _today(request, saved)
     may_change = request.app.state.gate.may_change(request, saved.owner)
     values = {"form": form, "today": today, "editing": editing, "may_change": may_change}
@@ -106,7 +106,7 @@ async def shown(request: Request, saved: Machine, status: int, form: TitleForm, 
     return await compute(request, "pages", _page, request, view, status, values)
 
 
-async def _frozen(request: Request, saved: Machine, label: str) -> Response:
+async def _revision_page(request: Request, saved: Machine, label: str) -> Response:
     """Read-only page of a machine in the state of a revision."""
     line, content = await revision(request, saved.id, label)
     catalogue: Catalogue = request.app.state.catalogue
@@ -114,7 +114,7 @@ async def _frozen(request: Request, saved: Machine, label: str) -> Response:
         catalogue = await request.app.state.store.catalogue(line.catalogue_version) or catalogue
     few: PoolName = "pages" if line.axes <= FEW_AXES else "batches"
     machine = await compute(request, few, lambda: thawed(saved, line, decode(content)))
-    view = MachineView(machine, catalogue, replace(Chosen.of(request.query_params), revision=line.label))
+    view = MachineView(machine, catalogue, replace(RowChoice.of(request.query_params), revision=line.label))
     values = {"form": EMPTY, "today": None, "editing": Editing(), "may_change": False, "line": line, "since": None}
     return await compute(request, few, _page, request, view, 200, values)
 
@@ -130,7 +130,7 @@ def _page(request: Request, view: MachineView, status: int, values: Mapping[str,
         saved=view.machine,
         view=view,
         details=row_details(view, rows),
-        shown=SHOWN,
+        filters=FILTERS,
         engine_version=ENGINE_VERSION,
         catalogue_version=request.app.state.catalogue.version,
         most_changes=CHANGES_ON_PAGE,
@@ -151,8 +151,8 @@ async def _today(request: Request, saved: Machine) -> list[Any] | None:
     versions = {(axis.answer["engine_version"], axis.answer["catalogue_version"]) for axis in saved.items}
     if versions <= {(ENGINE_VERSION, catalogue.version)}:
         return None
-    found: list[Any] = await compute(request, "batches", _changes, saved, catalogue)
-    return found
+    changed_axes: list[Any] = await compute(request, "batches", _changes, saved, catalogue)
+    return changed_axes
 
 
 def _changes(*arguments: Any) -> Any:
@@ -161,10 +161,10 @@ def _changes(*arguments: Any) -> Any:
     return machine_answers.changes(*arguments)
 
 
-async def _found(request: Request) -> Machine:
+async def _machine_of(request: Request) -> Machine:
     saved: Machine | None = await request.app.state.store.find_machine(request.path_params["machine"])
     if saved is None:
-        raise Problem(404, GONE)
+        raise Problem(404, NO_MACHINE)
     require_seen(request, saved)
     return saved
 
@@ -173,7 +173,7 @@ async def download(request: Request) -> Response:
     """File of the answers."""
     suffix = request.scope["path"].rpartition(".")[2]
     try:
-        saved = await _found(request)
+        saved = await _machine_of(request)
     except (Problem, StoreUnavailableError) as error:
         if reads_pages(request):
             return reason(request, REASON, error)
@@ -207,9 +207,9 @@ async def save(request: Request) -> Response:
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
     form = TitleForm({name: fields.get(name, "").strip() for name in TITLE_BLOCK})
-    saved = await _found(request)
+    saved = await _machine_of(request)
     if not form.is_sound:
-        return await shown(request, saved, 422, form, Editing())
+        return await machine_page(request, saved, 422, form, Editing())
     names = {FIELDS[name]: text or None for name, text in form.labels.items()}
     first = await compute(request, "pages", _first_revision, saved, names)
     if not await request.app.state.store.save_machine(saved.id, names, request.state.api_key, first):
@@ -228,7 +228,7 @@ def _first_revision(saved: Machine, names: Mapping[str, str | None]) -> Revision
 
 async def _require_same(request: Request, names: Mapping[str, str | None]) -> None:
     """Raise Problem 412 unless the machine is saved under the same names: a form that is sent twice saves once."""
-    saved = await _found(request)
+    saved = await _machine_of(request)
     if any(getattr(saved, name) != text for name, text in names.items()):
         raise Problem(412, SAVED_MEANWHILE)
 
@@ -247,7 +247,7 @@ async def rename(request: Request) -> Response:
     saved, version = await _own(request), version_of(fields)
     names = names_of(fields, saved)
     is_renamed = await request.app.state.store.rename(saved.id, names, version, "machine")
-    require_done(is_renamed, version if saved.saved else None, Problem(404, GONE), changed_since())
+    require_done(is_renamed, version if saved.saved else None, Problem(404, NO_MACHINE), changed_since())
     note(request, machine=saved.id)
     return RedirectResponse(f"{ADDRESS}/{saved.id}", 303)
 
@@ -262,17 +262,17 @@ async def ask_to_delete(request: Request) -> Response:
 async def delete(request: Request) -> Response:
     """Delete a machine permanently, and redirect to the list."""
     require_same_origin(request)
-    given = "content-type" in request.headers  # a script may send no body
-    version = version_of(dict(pairs_of(await read_form(request)))) if given else None
+    has_form = "content-type" in request.headers  # a script may send no body
+    version = version_of(dict(pairs_of(await read_form(request)))) if has_form else None
     saved = await _own(request)
     is_deleted = await request.app.state.store.delete(saved.id, version, "machine")
-    require_done(is_deleted, version, Problem(404, GONE), changed_since())
+    require_done(is_deleted, version, Problem(404, NO_MACHINE), changed_since())
     note(request, machine=saved.id)
     return RedirectResponse(ADDRESS, 303)
 
 
 async def _own(request: Request) -> Machine:
-    saved = await _found(request)
+    saved = await _machine_of(request)
     request.app.state.gate.require_owner(request, saved.owner)
     return saved
 

@@ -58,7 +58,7 @@ def _reason(fault: AxisFault) -> Reason:
 # --- Today ------------------------------------------------------------------------------------------------------------
 
 
-class Changed(NamedTuple):
+class AxisChange(NamedTuple):
     """Axis whose answer is different today, or the reasons why it has none."""
 
     axis: str
@@ -67,17 +67,17 @@ class Changed(NamedTuple):
     reasons: Sequence[Sentence]
 
 
-def changes(machine: Machine, catalogue: Catalogue) -> list[Changed]:
+def changes(machine: Machine, catalogue: Catalogue) -> list[AxisChange]:
     """Axes whose answer is different today, among those that had an answer."""
-    had = [axis for axis in machine.items if axis.answer["status"] != "open"]
+    answered = [axis for axis in machine.items if axis.answer["status"] != "open"]
     common = common_of(machine)
-    today = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in had], catalogue)
-    found = []
-    for axis, now in zip(had, today, strict=True):
+    today = answers([AxisQuestion(resolved(axis, common), axis.ordering_code) for axis in answered], catalogue)
+    differing = []
+    for axis, now in zip(answered, today, strict=True):
         before, after = _compared(answer_in(axis.answer)), _compared(now)
         if _differs(before, after):
-            found.append(Changed(axis.name or str(axis.number), before, after, [*map(fault_of, now.faults)]))
-    return found
+            differing.append(AxisChange(axis.name or str(axis.number), before, after, [*map(fault_of, now.faults)]))
+    return differing
 
 
 def _compared(answer: AxisAnswer) -> dict[str, Any]:

@@ -28,7 +28,7 @@ from hpn.web.edits import (
     OvertakenError,
     Plan,
     Undo,
-    named,
+    axes_by_number,
     plan_addition,
     plan_common,
     plan_copies,
@@ -41,7 +41,7 @@ from hpn.web.form import common as fields
 from hpn.web.form.query import FieldProblem
 from hpn.web.long_work import EVENTS, CountedAnswer, given_up_at_end
 from hpn.web.machines import FEW_AXES, apply, author_of, editable, machine_of
-from hpn.web.pages.machine import EMPTY, shown
+from hpn.web.pages.machine import EMPTY, machine_page
 from hpn.web.pages.machine_editing import (
     MOST_UNDONE,
     QUANTITY,
@@ -52,7 +52,7 @@ from hpn.web.pages.machine_editing import (
     patch_in,
     values_in,
 )
-from hpn.web.pages.machine_view import ADDRESS, REASON, Chosen
+from hpn.web.pages.machine_view import ADDRESS, REASON, RowChoice
 from hpn.web.pages.rendering import or_reason
 from hpn.words.wording import N_, Sentence
 
@@ -80,16 +80,16 @@ async def change(request: Request) -> Response:
     command = Command.of(pairs_of(await read_form(request)))
     await editable(request, request.path_params["machine"], [])
     if EVENTS in request.headers.get("accept", ""):
-        return CountedAnswer(request, lambda: or_reason(REASON)(partial(_answered, command=command))(request))
+        return CountedAnswer(request, lambda: or_reason(REASON)(partial(_answer, command=command))(request))
     with given_up_at_end():
-        return await _answered(request, command)
+        return await _answer(request, command)
 
 
-async def _answered(request: Request, command: Command) -> Response:
+async def _answer(request: Request, command: Command) -> Response:
     id = request.path_params["machine"]
     await machine_of(request, id, [], "machine")
     try:
-        editing = await _changed(request, id, command)
+        editing = await _editing_after(request, id, command)
     except OvertakenError as error:
         editing = await _overtaken(request, id, command, error)
     except ValidationError as error:
@@ -97,12 +97,12 @@ async def _answered(request: Request, command: Command) -> Response:
         editing = Editing(command, message=reason, is_refused=True, past=command.past)
     machine = await machine_of(request, id, None, "machine")
     status = 409 if editing.overtaken else 422 if editing.is_refused else 200
-    return await shown(request, machine, status, EMPTY, editing)
+    return await machine_page(request, machine, status, EMPTY, editing)
 
 
-async def _changed(request: Request, id: str, command: Command) -> Editing:
+async def _editing_after(request: Request, id: str, command: Command) -> Editing:
     if command.do == "undo" and command.past:
-        return await _undone(request, id, command)
+        return await _undo(request, id, command)
     if command.do == "kinds":
         return await _kinds_taken(request, id, command)
     if command.target == "common":
@@ -116,21 +116,21 @@ async def _changed(request: Request, id: str, command: Command) -> Editing:
     return await _axes_changed(request, id, command)
 
 
-async def _planned(
+async def _apply(
     request: Request, id: str, make: Callable[[Machine], Plan], *, dry: bool, editing: Editing, past: tuple[str, ...]
 ) -> Editing:
     """Content of the page after a change, or with its effect only if `dry`."""
     plans: list[Plan] = []
 
-    def made(machine: Machine) -> Change:
+    def plan(machine: Machine) -> Change:
         plans.append(make(machine))
         return plans[-1].change
 
     if dry:
         machine = await editable(request, id)
-        await compute(request, "pages" if len(machine.items) <= FEW_AXES else "batches", made, machine)
+        await compute(request, "pages" if len(machine.items) <= FEW_AXES else "batches", plan, machine)
         return replace(editing, plan=plans[-1], past=past)
-    await apply(request, id, made)
+    await apply(request, id, plan)
     return Editing(plan=plans[-1], message=Sentence(CHANGED), past=_with(past, plans[-1].undo))
 
 
@@ -146,11 +146,11 @@ async def _axes_changed(request: Request, id: str, command: Command) -> Editing:
         return replace(editing, past=command.past)
 
     def make(machine: Machine) -> Plan:
-        axes = _marked(machine, command)
+        axes = _marked_axes(machine, command)
         patches = [(axis, inherited(axis, command.symbol) if inherits else patch) for axis in axes]
         return plan_patches(machine, [(a, p) for a, p in patches if p], catalogue, author_of(request, machine))
 
-    return await _planned(request, id, make, dry=command.do == "dry", editing=editing, past=command.past)
+    return await _apply(request, id, make, dry=command.do == "dry", editing=editing, past=command.past)
 
 
 async def _common_changed(request: Request, id: str, command: Command) -> Editing:
@@ -160,7 +160,7 @@ async def _common_changed(request: Request, id: str, command: Command) -> Editin
     if form.problems:
         return replace(editing, past=command.past, message=form.problems[0].message, is_refused=True)
     before = values_in(command.before)
-    yours = fields.changed(before, values)
+    yours = fields.changes(before, values)
     if not yours:
         return replace(editing, past=command.past, message=Sentence(NOTHING_OTHER))
 
@@ -169,10 +169,10 @@ async def _common_changed(request: Request, id: str, command: Command) -> Editin
         if any(now.get(path) not in (before.get(path), value) for path, value in yours.items()):
             raise OvertakenError
         then = {path: value for path, value in {**now, **yours}.items() if value is not None}
-        common = Common.model_validate(fields.nested(then)).sent
+        common = Common.model_validate(fields.nested(then)).as_json
         return plan_common(machine, common, catalogue, author_of(request, machine))
 
-    return await _planned(request, id, make, dry=command.do != "apply", editing=editing, past=command.past)
+    return await _apply(request, id, make, dry=command.do != "apply", editing=editing, past=command.past)
 
 
 async def _kinds_taken(request: Request, id: str, command: Command) -> Editing:
@@ -182,7 +182,7 @@ async def _kinds_taken(request: Request, id: str, command: Command) -> Editing:
     def make(machine: Machine) -> Plan:
         return plan_kinds(machine, int(count) if is_number(count) else 0, catalogue, author_of(request, machine))
 
-    return await _planned(request, id, make, dry=False, editing=Editing(command), past=command.past)
+    return await _apply(request, id, make, dry=False, editing=Editing(command), past=command.past)
 
 
 async def _set_changed(request: Request, id: str, command: Command) -> Editing:
@@ -190,12 +190,12 @@ async def _set_changed(request: Request, id: str, command: Command) -> Editing:
     undone: list[Undo] = []
 
     def make(machine: Machine) -> Change:
-        axes, by = _marked(machine, command), author_of(request, machine)
+        axes, by = _marked_axes(machine, command), author_of(request, machine)
         if command.do == "copy":
             return plan_copies(machine, axes, by)
-        made, undo = plan_removal(machine, axes, by)
+        plan, undo = plan_removal(machine, axes, by)
         undone.append(undo)
-        return made
+        return plan
 
     numbers = await apply(request, id, make)
     if undone:
@@ -214,23 +214,23 @@ async def _axis_added(request: Request, id: str, command: Command) -> Editing:
     name, number = fields.get("name", "").strip() or None, fields.get("like", "")
 
     def make(machine: Machine) -> Change:
-        like = named(machine, [int(number)])[0] if is_number(number) else None
+        like = axes_by_number(machine, [int(number)])[0] if is_number(number) else None
         return plan_addition(machine, name, like, catalogue, author_of(request, machine))
 
     return _more(await apply(request, id, make, [int(number)] if is_number(number) else []), command)
 
 
-def _marked(machine: Machine, command: Command) -> list[SavedAxis]:
+def _marked_axes(machine: Machine, command: Command) -> list[SavedAxis]:
     """Marked axes; raises OvertakenError if one was changed or removed since the page showed it."""
     if command.everything:
         return list(machine.items)
     there = {axis.number: axis.version for axis in machine.items}
-    if lost := [number for number, version in command.seen.items() if there.get(number) != version]:
-        raise OvertakenError(lost)
-    return named(machine, list(command.seen))
+    if overtaken := [number for number, version in command.seen.items() if there.get(number) != version]:
+        raise OvertakenError(overtaken)
+    return axes_by_number(machine, list(command.seen))
 
 
-async def _undone(request: Request, id: str, command: Command) -> Editing:
+async def _undo(request: Request, id: str, command: Command) -> Editing:
     """Content of the page after the last change was undone."""
     catalogue: Catalogue = request.app.state.catalogue
     try:
@@ -239,10 +239,10 @@ async def _undone(request: Request, id: str, command: Command) -> Editing:
         raise Problem(422, "past is not what this page has given") from None
     await editable(request, id, [])
     store = request.app.state.store
-    gone = [axis for n in undo.removed if (axis := await store.removed_axis(id, n)) is not None]
+    removed_axes = [axis for n in undo.removed if (axis := await store.removed_axis(id, n)) is not None]
 
     def make(machine: Machine) -> Change:
-        return plan_undo(machine, undo, gone, catalogue, author_of(request, machine))[0]
+        return plan_undo(machine, undo, removed_axes, catalogue, author_of(request, machine))[0]
 
     await apply(request, id, make)
     if undo.order:
@@ -277,7 +277,7 @@ async def _overtaken(request: Request, id: str, command: Command, error: Overtak
     machine = await machine_of(request, id, [], "machine")
     before, now = values_in(command.before), dict(flat(common_of(machine)))
     form, values = fields.read(command.pairs, list(fields.PATHS), current())
-    yours = fields.changed(before, values)
+    yours = fields.changes(before, values)
     theirs = tuple(
         FieldProblem(name, None, Sentence(THEIRS, {"value": _value(name, now)}))
         for name, path in fields.PATHS.items()
@@ -303,7 +303,7 @@ def _value(name: str, values: Mapping[str, Any]) -> str:
 async def lead_back(request: Request) -> Response:
     """Redirect to the machine with the same axes: the address of changes has no page."""
     path = f"{ADDRESS}/{request.path_params['machine']}"
-    return RedirectResponse(Chosen.of(request.query_params).address(path), 303)
+    return RedirectResponse(RowChoice.of(request.query_params).address(path), 303)
 
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("fleet")])

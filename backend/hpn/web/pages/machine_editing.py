@@ -47,11 +47,11 @@ class Command:
         marks = [text.partition(":") for name, text in pairs if name == "axis"]
         seen = {int(n): int(v) for n, _, v in marks if is_number(n) and is_number(v)}
         past = tuple(text for name, text in pairs if name == "past")[-MOST_UNDONE:]
-        chosen = texts.get("field", "u")
+        field_name = texts.get("field", "u")
         return cls(
             texts.get("do", ""),
             texts.get("target", ""),
-            chosen if chosen in (*OF_MANY, QUANTITY) else "u",
+            field_name if field_name in (*OF_MANY, QUANTITY) else "u",
             seen,
             "everything" in texts,
             texts.get("before", ""),
@@ -91,10 +91,10 @@ def opened_common(machine: Machine) -> Editing:
     return Editing(common=fields.form_of(values, current(), has_tolerances=True), before=packed(json_of(values)))
 
 
-def values_in(carried: str) -> dict[str, Any]:
+def values_in(text: str) -> dict[str, Any]:
     """Common values that a form was opened with; empty if the text is blank or unreadable."""
     try:
-        values = msgspec.json.decode(unpacked(carried.encode()) or b"{}")
+        values = msgspec.json.decode(unpacked(text.encode()) or b"{}")
     except msgspec.DecodeError:
         return {}
     return values if isinstance(values, dict) else {}

@@ -32,7 +32,7 @@ class Decision(NamedTuple):
 class KindsView(NamedTuple):
     """Fewest kinds for the page."""
 
-    found: MachineKinds
+    fewest: MachineKinds
     decisions: list[Decision]
     drawing: Element | None
     names: Mapping[int, str]

@@ -43,7 +43,7 @@ Order = Literal[
 SORTINGS = {"-updated": N_("last changed first"), "title": N_("title"), "-utilisation": N_("largest utilisation")}
 """Orders offered by name; the heads of columns offer the others."""
 
-SHOWN = {"": N_("All"), "todo": N_("To do"), "mine": N_("Mine"), "differs": N_("other verdict today")}
+FILTERS = {"": N_("All"), "todo": N_("To do"), "mine": N_("Mine"), "differs": N_("other verdict today")}
 """Filters: all machines, those that need work, those of the reader's key, those with another verdict today."""
 
 
@@ -78,47 +78,49 @@ async def show_machines(request: Request) -> Response:
     """Page of saved machines, last changed first. `/api/v1/machines` lists them as JSON, newest first."""
     query, versions = request.query_params, versions_of(request.app.state)
     cursor = query.get("cursor") or None
-    shown: dict[str, Any] = {"lines": [], "counts": {}, "wanted": MachineFilter(), "problems": ()}
+    context: dict[str, Any] = {"lines": [], "counts": {}, "filter": MachineFilter(), "problems": ()}
     following = None
     try:
-        given = {name: query[name] for name in MachineFilter.model_fields if name in query}
-        shown["wanted"] = wanted = MachineFilter.model_validate(given)
+        texts = {name: query[name] for name in MachineFilter.model_fields if name in query}
+        context["filter"] = wanted = MachineFilter.model_validate(texts)
         filters = _filters(request, wanted, versions)
         filter = filters.get(wanted.show, filters[""])
         listed = await request.app.state.store.machine_list(cursor, LINES_ON_PAGE, filter, filters)
         request.app.state.todays.note(listed.lines)
         following = listed.next_cursor
-        shown["lines"] = [MachineListed(line, listed.governing.get(line.id)) for line in listed.lines]
-        shown["counts"] = listed.counts
+        context["lines"] = [MachineListed(line, listed.governing.get(line.id)) for line in listed.lines]
+        context["counts"] = listed.counts
     except ValidationError as error:
-        shown["problems"] = tuple(Sentence("{text}", {"text": fault.text}) for fault in Problem.of(error).errors)
+        context["problems"] = tuple(Sentence("{text}", {"text": fault.text}) for fault in Problem.of(error).errors)
     except ValueError:
-        shown["problems"] = (Sentence(NO_SUCH_PART),)
-    choose = partial(address, shown["wanted"])
-    shown |= {
+        context["problems"] = (Sentence(NO_SUCH_PART),)
+    choose = partial(address, context["filter"])
+    context |= {
         **WORDS,
         "versions": versions.key,
         "choose": choose,
         "orders": SORTINGS,
-        "filters": SHOWN,
+        "filters": FILTERS,
         "newest": cursor and choose(),
         "older": following and choose(cursor=following),
-        "draft": Upload(problems=shown["problems"]),
+        "draft": Upload(problems=context["problems"]),
     }
-    return await compute(request, "pages", page, request, "machines.html", 422 if shown["problems"] else 200, **shown)
+    return await compute(
+        request, "pages", page, request, "machines.html", 422 if context["problems"] else 200, **context
+    )
 
 
-def _filters(request: Request, wanted: MachineFilter, versions: Versions) -> Mapping[str, LineFilter]:
+def _filters(request: Request, chosen_filter: MachineFilter, versions: Versions) -> Mapping[str, LineFilter]:
     """Filters of a search by their names; without a key there is none for one's own machines."""
-    every = LineFilter(search=wanted.search or None, sort=wanted.sort)
+    every = LineFilter(search=chosen_filter.search or None, sort=chosen_filter.sort)
     filters = {"": every, "todo": replace(every, todo=True), "differs": replace(every, changed_by=versions.key)}
     key: str | None = request.state.api_key
     return filters if key is None else filters | {"mine": replace(every, owner=key)}
 
 
-def address(wanted: MachineFilter, **changes: str) -> str:
+def address(chosen_filter: MachineFilter, **changes: str) -> str:
     """Address of the list with changed filters."""
-    pairs = {"search": wanted.search, "show": wanted.show, "sort": wanted.sort, **changes}
+    pairs = {"search": chosen_filter.search, "show": chosen_filter.show, "sort": chosen_filter.sort, **changes}
     return onward(ADDRESS, **{name: text for name, text in pairs.items() if (name, text) != ("sort", "-updated")})
 
 

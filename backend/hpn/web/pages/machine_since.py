@@ -80,7 +80,7 @@ class Since:
         """Numbers of the axes that are new, or differ from the revision."""
         if self.compared is None:
             return frozenset(axis.number for axis in self.machine.items if axis.updated > self.line.created)
-        return frozenset(axis.number for axis in self.compared.found.axes if axis.change != "removed")
+        return frozenset(axis.number for axis in self.compared.differences.axes if axis.change != "removed")
 
     def mark(self, axis: SavedAxis) -> ChangeMark | None:
         """Mark of an axis that differs from the revision, or was changed in the latest one; None for any other."""
@@ -103,7 +103,7 @@ class Since:
         """Numbers of axes that are new, removed or changed, that have another gear, and that lost theirs."""
         if self.compared is None:
             return {}
-        axes = self.compared.found.axes
+        axes = self.compared.differences.axes
         kinds = {name: sum(axis.change == name for axis in axes) for name in ("changed", "added", "removed")}
         return kinds | {"other": len(self.compared.other), "lost": len(self.compared.lost)}
 
@@ -123,7 +123,7 @@ class Since:
         compared = self.compared
         return [
             compared.names[axis.number]
-            for axis in (compared.found.axes if compared else ())
+            for axis in (compared.differences.axes if compared else ())
             if compared and axis.change == "removed"
         ]
 

@@ -73,9 +73,9 @@ EXAMPLE_AXES: Mapping[str, str] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Upload(TableUpload):
-    """Table of axes as read; `taken` is set once no question is left."""
+    """Table of axes as read; `axes` is set once no question is left."""
 
-    taken: "AxesToSize | None" = field(default=None, repr=False)
+    axes: "AxesToSize | None" = field(default=None, repr=False)
 
 
 class AxesToSize(NamedTuple):
@@ -96,38 +96,38 @@ async def upload(request: Request) -> Response:
     draft, refusal = Upload(), None
     try:
         require_same_origin(request)
-        sent = await read_all_parts(request, request.app.state.settings.maximum_batch_body_bytes)
-        parts = dict(sent)
+        all_parts = await read_all_parts(request, request.app.state.settings.maximum_batch_body_bytes)
+        parts = dict(all_parts)
         if parts.get("new") == b"selections":
-            marked = [part.decode(errors="replace") for name, part in sent if name == "id"]
-            return RedirectResponse(f"{ADDRESS}/{await _kept(request, partial(_of_selections, marked))}", 303)
+            marked = [part.decode(errors="replace") for name, part in all_parts if name == "id"]
+            return RedirectResponse(f"{ADDRESS}/{await _store(request, partial(_of_selections, marked))}", 303)
         if parts.get("new"):
-            return RedirectResponse(f"{ADDRESS}/{await _sized(request, AxesToSize(()))}?edit=common", 303)
+            return RedirectResponse(f"{ADDRESS}/{await _store_axes(request, AxesToSize(()))}?edit=common", 303)
         draft = Upload(text=parts.get("text", b"").decode(errors="replace"))
         draft = await _read(request, parts)
-        if draft.taken:
-            return RedirectResponse(f"{ADDRESS}/{await _sized(request, draft.taken)}", 303)
+        if draft.axes:
+            return RedirectResponse(f"{ADDRESS}/{await _store_axes(request, draft.axes)}", 303)
     except (Problem, StoreUnavailableError) as error:
         refusal = error
     return await show_form(request, "machine_upload.html", draft, refusal, UNAVAILABLE, **WORDS)
 
 
 async def _read(request: Request, parts: Mapping[str, bytes]) -> Upload:
-    """Uploaded or carried table, read beside the service; `taken` is set once no question is left."""
+    """Uploaded or carried table, read beside the service; `axes` is set once no question is left."""
     content = await content_of(request, parts, parts.get("text", b""))
     if not content.strip():
         return Upload().refused(Sentence(NOTHING))
-    wanted = await compute(request, "pages", _wanted)
+    bounds = await compute(request, "pages", _bounds)
     fields = {name: part.decode(errors="replace") for name, part in parts.items() if name not in ("file", "table")}
-    found = await compute_beside(
-        request, "files", await compute(request, "pages", work_of, read_machine, content, wanted, fields)
+    table = await compute_beside(
+        request, "files", await compute(request, "pages", work_of, read_machine, content, bounds, fields)
     )
-    if found.refusal:
-        raise Problem(422, Sentence("{text}", {"text": found.refusal}))
-    _require_few(found.axes, found.phases)
-    if found.reading.suffix:
-        return Upload(text=fields.get("text", ""), taken=AxesToSize(found.rows, found.faults))
-    return await compute(request, "pages", _draft_of, fields, content, found.reading)
+    if table.refusal:
+        raise Problem(422, Sentence("{text}", {"text": table.refusal}))
+    _require_few(table.axes, table.phases)
+    if table.reading.suffix:
+        return Upload(text=fields.get("text", ""), axes=AxesToSize(table.rows, table.faults))
+    return await compute(request, "pages", _draft_of, fields, content, table.reading)
 
 
 def _require_few(axes: int, phases: int) -> None:
@@ -138,10 +138,10 @@ def _require_few(axes: int, phases: int) -> None:
             raise Problem(413, Sentence(template, values))
 
 
-def _wanted() -> TableBounds:
+def _bounds() -> TableBounds:
     from hpn.web import axis_tables
 
-    return axis_tables.WANTED
+    return axis_tables.BOUNDS
 
 
 def _draft_of(fields: Mapping[str, str], content: bytes | str, reading: Reading) -> Upload:
@@ -149,16 +149,16 @@ def _draft_of(fields: Mapping[str, str], content: bytes | str, reading: Reading)
     assert table is not None
     if table.problem:
         problems = (table.problem, *([Sentence(LARGER)] if "most" in table.problem.values else ()))
-    taken = AxesToSize(table.axes, (), table.origins) if table.whole and "size" in fields else None
-    return Upload(text=fields.get("text", ""), problems=problems, taken=taken).as_read(content, reading)
+    axes = AxesToSize(table.axes, (), table.origins) if table.whole and "size" in fields else None
+    return Upload(text=fields.get("text", ""), problems=problems, axes=axes).as_read(content, reading)
 
 
-async def _sized(request: Request, taken: AxesToSize) -> str:
+async def _store_axes(request: Request, axes: AxesToSize) -> str:
     """Id of the stored machine of a table; raises Problem, or StoreUnavailableError."""
-    return await _kept(request, partial(_calculated, taken))
+    return await _store(request, partial(_draft_with_answers, axes))
 
 
-async def _kept(request: Request, make: Callable[[Request], Awaitable[MachineDraft]]) -> str:
+async def _store(request: Request, make: Callable[[Request], Awaitable[MachineDraft]]) -> str:
     """Id of a stored machine, made once there is room; raises Problem, or StoreUnavailableError."""
     store, most_bytes = request.app.state.store, request.app.state.settings.maximum_unsaved_fleet_bytes
     caller = hashlib.sha256(request.state.caller.encode()).hexdigest()  # no address is stored in plain text
@@ -167,8 +167,8 @@ async def _kept(request: Request, make: Callable[[Request], Awaitable[MachineDra
         draft = await make(request)
         id: str = await store.keep_machine(replace(draft, owner=request.state.api_key, caller=caller), most_bytes)
     except ShareSpentError:
-        spent = Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})
-        raise Problem.later(spent, NO_ROOM_SECONDS, 429) from None
+        refusal = Sentence(SHARE_SPENT, {"most": str(MOST_OF_CALLER)})
+        raise Problem.later(refusal, NO_ROOM_SECONDS, 429) from None
     except NoRoomError:
         raise Problem.later(Sentence(NO_ROOM), NO_ROOM_SECONDS) from None
     note(request, machine=id)
@@ -184,17 +184,17 @@ async def _of_selections(ids: Sequence[str], request: Request) -> MachineDraft:
     return MachineDraft(drafts, ENGINE_VERSION, catalogue.version)
 
 
-async def _calculated(taken: AxesToSize, request: Request) -> MachineDraft:
+async def _draft_with_answers(axes: AxesToSize, request: Request) -> MachineDraft:
     """Draft of a table's machine, sized beside the service; raises Problem."""
     catalogue = request.app.state.catalogue
-    work = await compute(request, "pages", _work, taken, catalogue)
+    work = await compute(request, "pages", _work, axes, catalogue)
     return MachineDraft(await worked_beside(request, work), ENGINE_VERSION, catalogue.version)
 
 
-def _work(taken: AxesToSize, catalogue: Catalogue) -> Callable[[], Any]:
+def _work(axes: AxesToSize, catalogue: Catalogue) -> Callable[[], Any]:
     from hpn.web.axis_tables import drafts_in
 
-    return partial(drafts_in, taken.rows, taken.faults, dict(taken.origins), catalogue)
+    return partial(drafts_in, axes.rows, axes.faults, dict(axes.origins), catalogue)
 
 
 WORDS: dict[str, Any] = {

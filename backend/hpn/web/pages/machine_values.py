@@ -26,12 +26,12 @@ IN_ORDER = (*SHORT, *(path for path in COMMON if path not in SHORT))
 
 def common_values(common: Mapping[str, Any]) -> list[FieldValue]:
     """Common values of a machine."""
-    return _shown(dict(flat(common)))
+    return _fields(dict(flat(common)))
 
 
 def own_values(axis: SavedAxis) -> list[FieldValue]:
     """Own values of an axis in fields that may be common; None for a common value that it leaves out."""
-    return _shown({**dict(flat(_parts(own_of(axis)))), **dict.fromkeys(without_of(axis))})
+    return _fields({**dict(flat(_parts(own_of(axis)))), **dict.fromkeys(without_of(axis))})
 
 
 def _parts(own: Json) -> Json:
@@ -39,7 +39,7 @@ def _parts(own: Json) -> Json:
     return {name: own[name] for name in ("requirements", "output_load", "application_area", "rank_by") if name in own}
 
 
-def _shown(values: Mapping[str, Any]) -> list[FieldValue]:
+def _fields(values: Mapping[str, Any]) -> list[FieldValue]:
     named = ((BY_PATH.get(tuple(path.split("."))), path) for path in IN_ORDER if path in values)
     return [FieldValue(symbol, _plain(values[path])) for symbol, path in named if symbol is not None]
 

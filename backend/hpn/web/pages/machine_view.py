@@ -15,7 +15,7 @@ from hpn.documents.common import Common
 from hpn.documents.gears import GearOrder, gears_of
 from hpn.store import Machine, SavedAxis
 from hpn.web.columns import common_of
-from hpn.web.edits import placed
+from hpn.web.edits import order_axis
 from hpn.web.pages.machine_values import FieldValue, bound_of, common_values, own_values
 from hpn.words.wording import N_
 
@@ -25,7 +25,7 @@ REASON = "machine_refused.html"
 
 ROWS_ON_PAGE = 100
 
-SHOWN = {"": N_("All"), "todo": N_("To do"), "inside": N_("Don’t hold"), "changed": N_("Changed")}
+FILTERS = {"": N_("All"), "todo": N_("To do"), "inside": N_("Don’t hold"), "changed": N_("Changed")}
 """Filters of axes: all, without a suitable gear, with a suitable gear that does not hold over the whole tolerance, and
 changed since the revision of the comparison."""
 
@@ -130,7 +130,7 @@ def _by_need(rows: Iterable[MachineRow]) -> list[MachineRow]:
 
 
 @dataclass(frozen=True)
-class Chosen:
+class RowChoice:
     """Filter and order of the axes from an address, and the revision `since` which changes are shown; unknown names
     are ignored."""
 
@@ -143,20 +143,20 @@ class Chosen:
     since: str = ""
 
     @classmethod
-    def of(cls, query: Mapping[str, str]) -> "Chosen":
+    def of(cls, query: Mapping[str, str]) -> "RowChoice":
         """Choice in the query of an address."""
-        given = {name: query.get(name, "")[:200] for name in ("show", "gear", "search", "sort")}
-        given["show"] = given["show"] if given["show"] in SHOWN else ""
-        given["since"] = query.get("since", "")[:20]
-        given["sort"] = given["sort"] if given["sort"].removeprefix("-") in ORDERS else ""
+        texts = {name: query.get(name, "")[:200] for name in ("show", "gear", "search", "sort")}
+        texts["show"] = texts["show"] if texts["show"] in FILTERS else ""
+        texts["since"] = query.get("since", "")[:20]
+        texts["sort"] = texts["sort"] if texts["sort"].removeprefix("-") in ORDERS else ""
         part = query.get("part", "")
         number = int(part) if part.isascii() and part.isdigit() and len(part) < 6 else 1
-        return cls(**given, part=max(number, 1))
+        return cls(**texts, part=max(number, 1))
 
     def out_of(self, rows: Sequence[MachineRow], changed: Collection[int]) -> list[MachineRow]:
         """Rows to show, in their order; `changed` are the numbers of the axes that differ from a revision."""
         word = self.search.strip().casefold()
-        found = [
+        matches = [
             row
             for row in rows
             if (self.show != "todo" or row.status != "suitable")
@@ -166,11 +166,11 @@ class Chosen:
             and (not word or any(word in text.casefold() for text in row.texts))
         ]
         if not self.sort:
-            return _by_need(found)
+            return _by_need(matches)
         key = ORDERS[self.sort.removeprefix("-")]
-        valued = [row for row in found if key(row) is not None]
+        valued = [row for row in matches if key(row) is not None]
         valued.sort(key=key, reverse=self.sort.startswith("-"))
-        return valued + [row for row in found if key(row) is None]
+        return valued + [row for row in matches if key(row) is None]
 
     def address(self, path: str, **changes: str | int) -> str:
         """Address of a page with the same choice except for some changes."""
@@ -184,7 +184,7 @@ class MachineView:
 
     machine: Machine
     catalogue: Catalogue
-    chosen: Chosen = field(default_factory=Chosen)
+    chosen: RowChoice = field(default_factory=RowChoice)
     changed_axes: Collection[int] = frozenset()
     """Numbers of the axes that differ from the revision of the comparison."""
 
@@ -196,9 +196,9 @@ class MachineView:
         return self.chosen.revision
 
     @cached_property
-    def everything(self) -> Chosen:
+    def everything(self) -> RowChoice:
         """Choice of all axes."""
-        return Chosen(revision=self.frozen, since=self.chosen.since)
+        return RowChoice(revision=self.frozen, since=self.chosen.since)
 
     @cached_property
     def path(self) -> str:
@@ -216,14 +216,14 @@ class MachineView:
         return common_of(self.machine)
 
     @cached_property
-    def found(self) -> list[MachineRow]:
+    def chosen_rows(self) -> list[MachineRow]:
         """Rows that the address chooses."""
         return self.chosen.out_of(self.all, self.changed_axes)
 
     @cached_property
     def rows(self) -> list[MachineRow]:
         """Chosen rows on the present part."""
-        return self.found[(self.chosen.part - 1) * ROWS_ON_PAGE : self.chosen.part * ROWS_ON_PAGE]
+        return self.chosen_rows[(self.chosen.part - 1) * ROWS_ON_PAGE : self.chosen.part * ROWS_ON_PAGE]
 
     @cached_property
     def counts(self) -> Mapping[str, int]:
@@ -269,7 +269,7 @@ class MachineView:
     @cached_property
     def order(self) -> GearOrder:
         """Gears to order."""
-        return gears_of((placed(axis.number, axis) for axis in self.machine.items), self.catalogue)
+        return gears_of((order_axis(axis.number, axis) for axis in self.machine.items), self.catalogue)
 
     @cached_property
     def kinds(self) -> int:
@@ -329,7 +329,7 @@ class MachineView:
         return self.chosen.address(self.path, sort=turned, part=1) + "#axes-heading"
 
     @property
-    def opened(self) -> str:
+    def editing_address(self) -> str:
         """Address of the same axes with the form of the common values."""
         address = self.chosen.address(self.path)
         return f"{address}{'&' if '?' in address else '?'}edit=common"
@@ -351,7 +351,7 @@ class MachineView:
     @property
     def parts(self) -> int:
         """Number of parts in which the axes are shown."""
-        return max(1, -(-len(self.found) // ROWS_ON_PAGE))
+        return max(1, -(-len(self.chosen_rows) // ROWS_ON_PAGE))
 
     def part(self, number: int) -> str:
         """Address of a part; blank for a number without a part."""

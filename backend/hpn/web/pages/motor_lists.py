@@ -28,7 +28,7 @@ from hpn.web.door.problems import Problem
 from hpn.web.door.uploads import decoded, read_parts
 from hpn.web.form.linked import query_part
 from hpn.web.motor_lists import SERVER, MotorList, draft_of
-from hpn.web.motor_tables import WANTED, as_text, motors_in
+from hpn.web.motor_tables import BOUNDS, as_text, motors_in
 from hpn.web.pages.reading import read
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saved_list import changed_since, version_of
@@ -68,13 +68,13 @@ class MotorUpload(TableUpload):
 @or_reason(REASON)
 async def show_lists(request: Request) -> Response:
     """Page of all lists by their names, with the form for another. `/api/v1/motor-lists` is the same as JSON."""
-    shown: dict[str, Any] = {
+    context: dict[str, Any] = {
         "lines": await motor_lists.lines_of(request),
         "server": len(request.app.state.catalogue.motors),
         "draft": MotorUpload(),
         "roles": MOTORS.by_role,
     }
-    return await compute(request, "pages", page, request, "motor_lists.html", **shown)
+    return await compute(request, "pages", page, request, "motor_lists.html", **context)
 
 
 @or_reason(REASON)
@@ -82,18 +82,18 @@ async def show_list(request: Request) -> Response:
     """Page of a list with its motors and the form that edits it; `edit` is the step that asks for the key."""
     id, state = request.path_params["id"], request.app.state
     if id == SERVER:
-        return await _shown(request, SERVER, entries_of(state.catalogue.motors), None)
+        return await _list_page(request, SERVER, entries_of(state.catalogue.motors), None)
     saved = await motor_lists.list_of(request, id)
     state.gate.require_key_to_edit(request, saved.owner)
-    return await _shown(request, saved.name, motor_lists.entries_in(saved), saved)
+    return await _list_page(request, saved.name, motor_lists.entries_in(saved), saved)
 
 
-async def _shown(request: Request, name: str, motors: list[MotorEntry], saved: SavedMotorList | None) -> Response:
+async def _list_page(request: Request, name: str, motors: list[MotorEntry], saved: SavedMotorList | None) -> Response:
     may_change = saved is not None and request.app.state.gate.may_change(request, saved.owner)
     draft = MotorUpload()
     if saved is not None and may_change:
         draft = MotorUpload(name=saved.name, text=as_text(motors), list=saved.id, version=str(saved.version))
-    shown: dict[str, Any] = {
+    context: dict[str, Any] = {
         "title": name,
         "saved": saved,
         "motors": motors[:MOST_SHOWN],
@@ -102,7 +102,7 @@ async def _shown(request: Request, name: str, motors: list[MotorEntry], saved: S
         "draft": draft,
         "roles": MOTORS.by_role,
     }
-    return await compute(request, "pages", page, request, "motor_list.html", **shown)
+    return await compute(request, "pages", page, request, "motor_list.html", **context)
 
 
 # --- Reading and keeping ----------------------------------------------------------------------------------------------
@@ -110,22 +110,22 @@ async def _shown(request: Request, name: str, motors: list[MotorEntry], saved: S
 
 async def read_list(request: Request) -> Response:
     """Show how each column of a table is read, or store it as a list and redirect to its pairs, or to its page."""
-    return await _taken(request, "")
+    return await _uploaded(request, "")
 
 
 async def save_list(request: Request) -> Response:
     """Show how each column of a table is read, or replace an existing list by it."""
-    return await _taken(request, request.path_params["id"])
+    return await _uploaded(request, request.path_params["id"])
 
 
-async def _taken(request: Request, id: str) -> Response:
+async def _uploaded(request: Request, id: str) -> Response:
     draft, refusal = MotorUpload(list=id), None
     try:
         require_same_origin(request)
         draft, keeps = await _read(request, id)
         saved = await motor_lists.changeable(request, id) if id else None
         if keeps and not draft.problems and draft.table and draft.table.whole:
-            return await _kept(request, draft, saved)
+            return await _store(request, draft, saved)
     except (Problem, StoreUnavailableError) as error:
         refusal = error
     return await show_form(request, "motor_list_read.html", draft, refusal, UNAVAILABLE, roles=MOTORS.by_role)
@@ -145,7 +145,7 @@ async def _read(request: Request, id: str) -> tuple[MotorUpload, bool]:
     )
     if not content.strip():
         return draft.refused(Sentence(NOTHING)), False
-    reading = await read(request, content, WANTED, fields)
+    reading = await read(request, content, BOUNDS, fields)
     return await compute(request, "pages", _draft_of, draft, content, reading), "keep" in fields
 
 
@@ -161,19 +161,19 @@ def _draft_of(draft: MotorUpload, content: bytes | str, reading: Reading) -> Mot
     return replace(whole, problems=problems, notes=tuple(notes), motors=tuple(motors))
 
 
-async def _kept(request: Request, draft: MotorUpload, saved: SavedMotorList | None) -> Response:
+async def _store(request: Request, draft: MotorUpload, saved: SavedMotorList | None) -> Response:
     """Store a list; redirect to the pairs of its application, else to the list. Raises Problem for an invalid list."""
     if not draft.name:
         raise Problem(422, Sentence(NO_NAME))
     try:
-        sent = MotorList.model_validate({"name": draft.name, "motors": draft.motors})
+        motors = MotorList.model_validate({"name": draft.name, "motors": draft.motors})
     except ValidationError as error:
         raise Problem(422, [sentence for _, sentence, _ in sentences_of(error)][:5]) from None
     if saved is None:
-        id = (await motor_lists.keep(request, draft_of(sent))).id
+        id = (await motor_lists.keep(request, draft_of(motors))).id
     else:
         version = version_of({"version": draft.version})
-        id = (await motor_lists.replace(request, saved.id, draft_of(sent), version, changed_since())).id
+        id = (await motor_lists.replace(request, saved.id, draft_of(motors), version, changed_since())).id
     place = f"/pairs?{draft.link}&{urlencode({'list': id})}" if draft.link else f"{ADDRESS}/{id}"
     return RedirectResponse(place, 303)
 

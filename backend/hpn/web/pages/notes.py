@@ -140,8 +140,8 @@ def note_groups(notices: Iterable[Notice], catalogue: Catalogue | None) -> list[
         group, touches, actions = _NOTES.get(notice.code, _OTHER)
         offered = [_addressed(one, notice, catalogue) for one in actions if one.kind != "type" or one.what not in typed]
         typed.update(one.what for one in offered if one.kind == "type")
-        done = tuple(one for one in offered if one.what)
-        groups[group].append(Note(notice, touches, done))
+        complete = tuple(one for one in offered if one.what)
+        groups[group].append(Note(notice, touches, complete))
     return [NoteGroup(group, GROUPS[group], tuple(notes)) for group, notes in groups.items() if notes]
 
 

@@ -27,7 +27,7 @@ from hpn.web.motor_lists import SERVER
 from hpn.web.pages.axis import neighbours, number_of
 from hpn.web.pages.axis_view import AxisView, view_of
 from hpn.web.pages.motor_lists import REASON, MotorUpload
-from hpn.web.pages.pairs_view import MOST_SHOWN, SHOWN, PairsView
+from hpn.web.pages.pairs_view import MOST_ROWS, ROWS_AT_FIRST, PairsView
 from hpn.web.pages.rendering import or_reason, page
 from hpn.words.wording import N_, Sentence
 
@@ -85,7 +85,7 @@ class PairsQuery:
 @or_reason(REASON)
 async def show_pairs(request: Request) -> Response:
     """Page of pairs for the application of the address."""
-    return await _shown(request, await compute(request, "pages", _query_of, request.url.query))
+    return await _pairs_page(request, await compute(request, "pages", _query_of, request.url.query))
 
 
 def _query_of(query: str) -> PairsQuery:
@@ -106,10 +106,10 @@ async def show_axis_pairs(request: Request) -> Response:
         carried = [pair for pair in pairs if pair[0] not in OWN]
         form, view = view_of(machine, axis, around, _read_alone(carried), request.app.state.catalogue)
         own = dict(pair for pair in pairs if pair[0] in OWN)
-        kept = carried or list(view.typed)
-        return PairsQuery(f"{view.place}/pairs", view.place, form, kept, own, view)
+        own_pairs = carried or list(view.typed)
+        return PairsQuery(f"{view.place}/pairs", view.place, form, own_pairs, own, view)
 
-    return await _shown(request, await compute(request, "pages", read))
+    return await _pairs_page(request, await compute(request, "pages", read))
 
 
 def _read_alone(pairs: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -122,7 +122,7 @@ def _plain(text: str) -> str:
     return text.strip().replace(",", ".")
 
 
-async def _shown(request: Request, query: PairsQuery) -> Response:
+async def _pairs_page(request: Request, query: PairsQuery) -> Response:
     state = request.app.state
     lines = await motor_lists.lines_of(request)
     first = SERVER if state.catalogue.motors else lines[0].id if lines else ""
@@ -161,7 +161,7 @@ def _page(
             next((rank for rank in RANKS if rank == by), "weight"),
             least if isinstance(least, float) else None,
             bool(query.own.get("all")),
-            MOST_SHOWN if query.own.get("more") else SHOWN,
+            MOST_ROWS if query.own.get("more") else ROWS_AT_FIRST,
             (gear, motor),
         )
         try:

@@ -28,7 +28,7 @@ from hpn.web.form.linked import LONGEST_LINK
 from hpn.words.reply import finite
 from hpn.words.wording import Sentence
 
-SHOWN, MOST_SHOWN = 30, 1000
+ROWS_AT_FIRST, MOST_ROWS = 30, 1000
 """Number of pairs that the page lists at first, and maximum."""
 
 NEAREST = 3
@@ -65,7 +65,7 @@ class PairsView:
     rank_by: PairRank = "weight"
     least_Hz: float | None = None
     all_pairs: bool = False
-    most: int = SHOWN
+    most: int = ROWS_AT_FIRST
     marked: tuple[str, str] = ("", "")
 
     @cached_property

@@ -48,7 +48,7 @@ from hpn.words.wording import N_, Sentence
 
 NOTHING = N_("the workbook is empty")
 _AXIS = re.compile(r"([A-Za-z0-9_-]{1,60})/([0-9]{1,10})")
-WANTED = TableBounds(CYCLE, MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
+BOUNDS = TableBounds(CYCLE, MAXIMUM_PHASES, MAXIMUM_CHARACTERS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ async def paste(request: Request) -> Response:
             sizing = await compute_beside(request, "files", partial(opened, content))
             return await compute(request, "pages", _of_sizing, request, post, sizing)
         if post.file or post.text.strip():
-            reading = await read(request, post.file or post.text, WANTED, post.fields)
+            reading = await read(request, post.file or post.text, BOUNDS, post.fields)
         return await compute(request, "pages", _answer, request, post, reading)
     except Problem as problem:
         problems = problem.sentences or (_plain(problem.detail),)
@@ -142,7 +142,7 @@ def _taken_or_shown(request: Request, fields: Mapping[str, str], draft: PasteDra
 
 
 def _of_application(request: Request, link: str, text: str, take: str) -> Response:
-    draft = _opened(link, text)
+    draft = _of_json(link, text)
     if draft.application and (take or "hx-request" not in request.headers):
         query = to_link(draft.application).removeprefix("/?")
         of_axis = (pair for pair in pairs_of(link) if pair[0] in OF_AXIS)
@@ -156,11 +156,11 @@ def _of_sizing(request: Request, post: PastePost, sizing: OpenedSizing) -> Respo
         return _render(request, PasteDraft(post.link, problems=(sizing.problem,)), 422)
     if post.fields.get("take"):
         return _of_application(request, post.link, sizing.text, "all")
-    draft = replace(_opened(post.link, sizing.text), unused=sizing.unused, note=sizing.note)
+    draft = replace(_of_json(post.link, sizing.text), unused=sizing.unused, note=sizing.note)
     return _render(request, draft, 200)
 
 
-def _opened(link: str, text: str) -> PasteDraft:
+def _of_json(link: str, text: str) -> PasteDraft:
     """Draft of a text that begins like a JSON object."""
     try:
         return PasteDraft(link, text, application=parsed(Application, text))

@@ -22,9 +22,9 @@ SHORT_CHARACTERS = 2_000
 _PLACE = Pattern(r"([ru])([0-9]{1,6})", 7)
 
 
-async def read(request: Request, content: bytes | str, wanted: TableBounds, fields: Mapping[str, str]) -> Reading:
+async def read(request: Request, content: bytes | str, bounds: TableBounds, fields: Mapping[str, str]) -> Reading:
     """Reading of a file or text with the answers in a form's fields; raises Problem 413 or 503."""
-    work = await compute(request, "pages", work_of, reading_of, content, wanted, fields)
+    work = await compute(request, "pages", work_of, reading_of, content, bounds, fields)
     if isinstance(content, str) and len(content) <= SHORT_CHARACTERS:
         return await compute(request, "pages", work)
     return await compute_beside(request, "files", work)
@@ -33,13 +33,13 @@ async def read(request: Request, content: bytes | str, wanted: TableBounds, fiel
 def work_of(
     how: Callable[[bytes | str, TableBounds, Choices, Collection[str]], T],
     content: bytes | str,
-    wanted: TableBounds,
+    bounds: TableBounds,
     fields: Mapping[str, str],
 ) -> Callable[[], T]:
     """Call that reads. A column without a unit is in the wire's unit if the reader uses the same unit."""
     reader = current()
-    assumed = tuple(unit for unit in wanted.inputs.units if reader.measure(unit).same)
-    return partial(how, content, wanted, choices_of(fields), assumed)
+    assumed = tuple(unit for unit in bounds.inputs.units if reader.measure(unit).same)
+    return partial(how, content, bounds, choices_of(fields), assumed)
 
 
 def choices_of(fields: Mapping[str, str]) -> Choices:

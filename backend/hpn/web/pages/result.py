@@ -61,7 +61,7 @@ class CandidateList:
 
 @dataclass(frozen=True, kw_only=True)
 class Result:
-    """Selection, and the candidate that the page shows; `asked` is True if the reader chose it.
+    """Selection, and the candidate that the page shows; `is_chosen_gear` is True if the reader chose it.
 
     `application` is None if a version with other inputs saved it. `catalogue` is that of the selection, None if it is
     not kept. `example` is True for the handbook's application. `choosing` precedes the designation in the address of a
@@ -72,7 +72,7 @@ class Result:
     selection: Selection
     application: Application | None
     chosen: Candidate
-    asked: bool
+    is_chosen_gear: bool
     catalogue: Catalogue | None
     choosing: str = ""
     tail: str = ""

@@ -45,11 +45,11 @@ FEW_IN_ALL = 1000
 """Maximum axes in all revisions with figures in the list; older revisions are listed without figures."""
 
 
-async def _found(request: Request, kind: DocumentKind) -> Machine:
+async def _machine_of(request: Request, kind: DocumentKind) -> Machine:
     return await machine_of(request, request.path_params[{"machine": "machine", "selection": "id"}[kind]], None, kind)
 
 
-async def shown(
+async def revisions_page(
     request: Request, machine: Machine, status: int = 200, block: Mapping[str, str] | None = None, messages: Any = ()
 ) -> Response:
     """Page of a document's revisions, with the form of the next one as filled in."""
@@ -104,7 +104,7 @@ def _page(
         today = _today(request, machine, pair, states[1], compared)
     frozen = {number: decode(state.content) for number, state in brief.items() if isinstance(state.content, bytes)}
     now = MachineView(machine, request.app.state.catalogue)
-    shown = {
+    context = {
         "compared": compared,
         "today": today,
         "pair": pair,
@@ -114,7 +114,7 @@ def _page(
         "moments": moments_of(pair, values["all_lines"]),
         "now": now,
     }
-    return page(request, "revisions.html", status, **shown, **values)
+    return page(request, "revisions.html", status, **context, **values)
 
 
 def _today(
@@ -134,50 +134,50 @@ def _today(
     return Compared(differences(request, machine, (pair[1], TODAY), (last, today)), current())
 
 
-async def _saved(request: Request, kind: DocumentKind) -> Response:
+async def _save(request: Request, kind: DocumentKind) -> Response:
     """Freeze the working copy under the label of a form, and redirect to the list."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))
-    machine = await _found(request, kind)
-    given = {name: fields.get(name, "").strip() for name in BLOCK}
+    machine = await _machine_of(request, kind)
+    texts = {name: fields.get(name, "").strip() for name in BLOCK}
     try:
-        block = RevisionBlock.model_validate({name: text for name, text in given.items() if text})
+        block = RevisionBlock.model_validate({name: text for name, text in texts.items() if text})
         await freeze(request, machine.id, block, None, version=version_of(fields))
     except ValidationError as error:
         problem = Problem.of(error)
-        return await shown(
-            request, machine, 422, given, [Sentence("{text}", {"text": each.text}) for each in problem.errors]
+        return await revisions_page(
+            request, machine, 422, texts, [Sentence("{text}", {"text": each.text}) for each in problem.errors]
         )
     except Problem as error:
         if error.status_code != 409:
             raise
         lines = await request.app.state.store.revisions(machine.id)
-        return await shown(request, machine, 409, {**given, "label": next_label(lines)}, error.sentences)
+        return await revisions_page(request, machine, 409, {**texts, "label": next_label(lines)}, error.sentences)
     return RedirectResponse(f"{PLACES[kind]}/{machine.id}/revisions", 303)
 
 
 @or_reason(REASON)
 async def show_of_machine(request: Request) -> Response:
     """Page of a machine's revisions, with a comparison of two states."""
-    return await shown(request, await _found(request, "machine"))
+    return await revisions_page(request, await _machine_of(request, "machine"))
 
 
 @or_reason(REASON)
 async def save_of_machine(request: Request) -> Response:
     """Save the working copy of a machine as a revision."""
-    return await _saved(request, "machine")
+    return await _save(request, "machine")
 
 
 @or_reason(SELECTION_REASON)
 async def show_of_selection(request: Request) -> Response:
     """Page of a selection's revisions, with a comparison of two states."""
-    return await shown(request, await _found(request, "selection"))
+    return await revisions_page(request, await _machine_of(request, "selection"))
 
 
 @or_reason(SELECTION_REASON)
 async def save_of_selection(request: Request) -> Response:
     """Save the working copy of a selection as a revision."""
-    return await _saved(request, "selection")
+    return await _save(request, "selection")
 
 
 router = APIRouter(include_in_schema=False)

@@ -91,44 +91,44 @@ class Compared:
         return self.export.labels
 
     @cached_property
-    def found(self) -> DocumentDifferences:
+    def differences(self) -> DocumentDifferences:
         """Differences of the two states."""
         return self.export.differences
 
     @property
     def sides(self) -> tuple[Summary, Summary]:
         """Summaries of both states."""
-        return self.found.side_from, self.found.side_to
+        return self.differences.side_from, self.differences.side_to
 
     @property
     def cells(self) -> int:
         """Number of differing inputs; a common value counts once."""
-        return sum(len(axis.inputs) for axis in self.found.axes) + self.common_cells
+        return sum(len(axis.inputs) for axis in self.differences.axes) + self.common_cells
 
     @property
     def common_cells(self) -> int:
         """Number of differing common values."""
-        return sum(one.pointer.startswith("/common/") for one in self.found.common)
+        return sum(one.pointer.startswith("/common/") for one in self.differences.common)
 
     @property
     def changed(self) -> int:
         """Number of axes with a differing input, or in only one of the states."""
-        return sum(bool(axis.inputs) or axis.change != "changed" for axis in self.found.axes)
+        return sum(bool(axis.inputs) or axis.change != "changed" for axis in self.differences.axes)
 
     @property
     def axes(self) -> int:
         """Number of axes in either state."""
-        return len(self.found.axes) + self.found.same
+        return len(self.differences.axes) + self.differences.same
 
     @cached_property
     def lost(self) -> list[DifferentAxis]:
         """Axes that lost their gear."""
-        return [axis for axis in self.found.axes if axis.lost_its_gear]
+        return [axis for axis in self.differences.axes if axis.lost_its_gear]
 
     @cached_property
     def other(self) -> list[DifferentAxis]:
         """Axes with another gear."""
-        return [axis for axis in self.found.axes if axis.has_another_gear and not axis.lost_its_gear]
+        return [axis for axis in self.differences.axes if axis.has_another_gear and not axis.lost_its_gear]
 
     @cached_property
     def names(self) -> Mapping[int, str]:
@@ -139,17 +139,17 @@ class Compared:
     @property
     def common(self) -> list[Cell]:
         """Differing fields of the title block and common values."""
-        return input_cells(self.found.common, self.reader)
+        return input_cells(self.differences.common, self.reader)
 
     @property
     def inputs(self) -> list[Cell]:
         """Differing inputs, for a document with one axis."""
-        return [cell for axis in self.found.axes for cell in input_cells(axis.inputs, self.reader)]
+        return [cell for axis in self.differences.axes for cell in input_cells(axis.inputs, self.reader)]
 
     @property
     def results(self) -> list[Cell]:
         """Differing verdicts and figures, for a document with one axis."""
-        answered = [each for axis in self.found.axes for each in (*axis.verdicts, *axis.figures)]
+        answered = [each for axis in self.differences.axes for each in (*axis.verdicts, *axis.figures)]
         gear = next(((each.value_from, each.value_to) for each in answered if each.field == "designation"), None)
         # Without an ordering code the selected gear is the gear; it is shown once.
         once = [each for each in answered if each.field != "selected" or (each.value_from, each.value_to) != gear]
@@ -173,18 +173,18 @@ class Compared:
     @cached_property
     def rows(self) -> list[ComparedAxis]:
         """Axes to show."""
-        rows = [self._row(axis) for axis in self.found.axes[:MOST_AXES]]
+        rows = [self._row(axis) for axis in self.differences.axes[:MOST_AXES]]
         return rows + self._same(MOST_AXES - len(rows)) if self.whole else rows
 
     @property
     def cells_head(self) -> str:
         """Head of the column with their cells."""
-        return head_of(self.found.axes)
+        return head_of(self.differences.axes)
 
     @property
     def left_out(self) -> int:
         """Number of further axes that are not shown."""
-        return (self.axes if self.whole else len(self.found.axes)) - len(self.rows)
+        return (self.axes if self.whole else len(self.differences.axes)) - len(self.rows)
 
     def _row(self, axis: DifferentAxis) -> ComparedAxis:
         before, after = sides = self.export.sides(axis.number)
@@ -201,7 +201,7 @@ class Compared:
         )
 
     def _same(self, most: int) -> list[ComparedAxis]:
-        differ = {axis.number for axis in self.found.axes}
+        differ = {axis.number for axis in self.differences.axes}
         same = [axis for axis in self.export.documents[1].axes if axis.number not in differ]
         return [
             ComparedAxis(axis.number, self.names[axis.number], side, side)
@@ -210,7 +210,7 @@ class Compared:
         ]
 
 
-def pair_of(machine: Machine, lines: Sequence[RevisionLine], wanted: Mapping[str, str]) -> tuple[str, str] | None:
+def pair_of(machine: Machine, lines: Sequence[RevisionLine], labels: Mapping[str, str]) -> tuple[str, str] | None:
     """Labels of the states that an address compares; by default the latest revision and newer changes, or the latest
     two revisions. None without a revision.
     """
@@ -218,8 +218,8 @@ def pair_of(machine: Machine, lines: Sequence[RevisionLine], wanted: Mapping[str
         return None
     is_new = machine.updated > lines[0].created
     older, newer = (lines[0].label, NOW) if is_new or len(lines) == 1 else (lines[1].label, lines[0].label)
-    before, after = (wanted.get(name, "")[:20] or label for name, label in (("from", older), ("to", newer)))
-    return written(before, lines), written(after, lines)
+    before, after = (labels.get(name, "")[:20] or label for name, label in (("from", older), ("to", newer)))
+    return label_as_saved(before, lines), label_as_saved(after, lines)
 
 
 def is_working_copy(machine: Machine, lines: Sequence[RevisionLine], pair: tuple[str, str] | None) -> bool:
@@ -233,9 +233,9 @@ def is_working_copy(machine: Machine, lines: Sequence[RevisionLine], pair: tuple
 def moments_of(pair: tuple[str, str] | None, lines: Sequence[RevisionLine]) -> str:
     """Text with dates and authors of the compared revisions."""
     by_label = {line.label: line for line in lines}
-    shown = [by_label[label] for label in pair or () if label in by_label]
-    days = dict.fromkeys(line.created.strftime("%Y-%m-%d") for line in shown)
-    authors = dict.fromkeys(line.author for line in shown if line.author)
+    pair_lines = [by_label[label] for label in pair or () if label in by_label]
+    days = dict.fromkeys(line.created.strftime("%Y-%m-%d") for line in pair_lines)
+    authors = dict.fromkeys(line.author for line in pair_lines if line.author)
     return ", ".join([" – ".join(days), *authors])
 
 
@@ -245,7 +245,7 @@ def gears_shown(documents: Mapping[int, Frozen], reader: Reader) -> dict[int, Si
     return {number: SideShown.of(axis, reader) for number, axis in firsts.items()}
 
 
-def written(label: str, lines: Iterable[RevisionLine]) -> str:
+def label_as_saved(label: str, lines: Iterable[RevisionLine]) -> str:
     """Label in the case of its revision or state, so that lists mark it; an unknown label is unchanged."""
     key = label_key(label)
     return key if key in STATES else next((line.label for line in lines if label_key(line.label) == key), label)

@@ -57,7 +57,7 @@ async def show_selection(request: Request) -> Response:
     machine: Machine | None = await request.app.state.store.find_machine(id, "selection")
     label = request.query_params.get("revision")
     frozen = await request.app.state.store.revision_contents(id, MOST_REVISIONS) if machine else {}
-    return await on_saved(request, id, partial(_shown, request, machine, frozen), label)
+    return await on_saved(request, id, partial(_selection_page, request, machine, frozen), label)
 
 
 class WorkingCopy(NamedTuple):
@@ -73,7 +73,9 @@ class WorkingCopy(NamedTuple):
         return cls(f"/machines/{machine.id}/axes/{axis.number}", axis.updated > saved.revisions[0].created)
 
 
-def _shown(request: Request, machine: Machine | None, frozen: Mapping[int, bytes], reopened: Reopened) -> Response:
+def _selection_page(
+    request: Request, machine: Machine | None, frozen: Mapping[int, bytes], reopened: Reopened
+) -> Response:
     values = _page(reopened, request.query_params.get("gear", ""), request.app.state.catalogue)
     values |= {
         "working": WorkingCopy.of(machine, reopened.saved) if machine else None,
@@ -88,10 +90,10 @@ def _shown(request: Request, machine: Machine | None, frozen: Mapping[int, bytes
 async def copy_selection(request: Request) -> Response:
     """Live page with a copy of a saved selection whose duty cycle is too long for a link."""
     label = request.query_params.get("revision")
-    return await on_saved(request, request.path_params["id"], partial(_copied, request), label)
+    return await on_saved(request, request.path_params["id"], partial(_edit_copy, request), label)
 
 
-def _copied(request: Request, reopened: Reopened) -> Response:
+def _edit_copy(request: Request, reopened: Reopened) -> Response:
     return calculator.respond(request, calculator.read_query(reopened.link.removeprefix("/?").encode()))
 
 
@@ -110,7 +112,7 @@ def _page(reopened: Reopened, designation: str, catalogue: Catalogue) -> dict[st
         "lines": [change for change in changes if not change.is_wording],
         "worded": [change for change in changes if change.is_wording],
         "catalogue_version": catalogue.version,
-        "published": _published(reopened.then, catalogue, answer.chosen.designation),
+        "published": _figure_rows(reopened.then, catalogue, answer.chosen.designation),
         "changed_figures": _changed_figures(reopened, catalogue, answer.chosen.designation),
         "changed_gears": _gears(reopened.figures, gone=False),
         "gone_gears": _gears(reopened.figures, gone=True),
@@ -139,14 +141,14 @@ def result_of(
         selection=selection,
         application=application,
         chosen=chosen,
-        asked=chosen is not selection.foremost,
+        is_chosen_gear=chosen is not selection.foremost,
         catalogue=then,
         choosing=f"{url_of(saved.id)}?{earlier}gear=",
         tail=query_of({"title": saved.title or "", "ref": saved.reference or ""}),
     )
 
 
-def _published(then: Catalogue | None, today: Catalogue, designation: str) -> list[Row]:
+def _figure_rows(then: Catalogue | None, today: Catalogue, designation: str) -> list[Row]:
     """Published figures of a gear then and today; empty if the former catalogue lacks the gear or is not kept."""
     gears = [one.by_designation.get(designation) if one else None for one in (then, today)]
     return rows_of(*(published.ranged(published.published(gear)) for gear in gears)) if gears[0] else []

@@ -59,10 +59,10 @@ async def show_selections(request: Request) -> Response:
     store: Store = request.app.state.store
     status = 422
     try:
-        wanted = SelectionFilter.model_validate(query)
-        changed_by = versions.key if wanted.differs else None
-        lines = LineFilter("selection", wanted.search, wanted.reference, changed_by=changed_by)
-        part = await store.page(cursor=cursor, limit=LINES_ON_PAGE, wanted=lines)
+        chosen_filter = SelectionFilter.model_validate(query)
+        changed_by = versions.key if chosen_filter.differs else None
+        lines = LineFilter("selection", chosen_filter.search, chosen_filter.reference, changed_by=changed_by)
+        part = await store.page(cursor=cursor, limit=LINES_ON_PAGE, filter=lines)
     except ValidationError as error:
         values["errors"] = {fault.location[0]: fault.text for fault in Problem.of(error).errors}
     except ValueError:
@@ -77,7 +77,7 @@ async def show_selections(request: Request) -> Response:
 @or_reason(REASON)
 async def rename_selection(request: Request) -> Response:
     """Rename a saved selection (title and reference), and redirect to the list."""
-    return await _changed(request, _rename)
+    return await _change(request, _rename)
 
 
 async def _rename(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
@@ -122,7 +122,7 @@ async def ask_to_delete(request: Request) -> Response:
 @or_reason(REASON)
 async def delete_selection(request: Request) -> Response:
     """Delete a saved selection permanently, and redirect to the list."""
-    return await _changed(request, _delete)
+    return await _change(request, _delete)
 
 
 async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str]) -> None:
@@ -130,7 +130,7 @@ async def _delete(request: Request, saved: SavedSelection, fields: dict[str, str
     require_done(await request.app.state.store.delete(saved.id, version), version, not_found(saved.id), changed_since())
 
 
-async def _changed(request: Request, change: Any) -> Response:
+async def _change(request: Request, change: Any) -> Response:
     """Make a change of a saved selection from its list; redirect to the list."""
     require_same_origin(request)
     fields = dict(pairs_of(await read_form(request)))

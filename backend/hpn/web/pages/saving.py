@@ -69,16 +69,16 @@ async def save_from_page(request: Request) -> Response:
     """Save the selection of the live page, and redirect to the page of the saved selection."""
     require_same_origin(request)
     body = await read_form(request)
-    posted = await compute(request, "pages", _read_form, body)
+    save = await compute(request, "pages", _read_form, body)
     try:
         owner, catalogue = request.state.api_key, request.app.state.catalogue
-        draft = await compute(request, "pages", _draft, posted, catalogue, owner)
+        draft = await compute(request, "pages", _draft, save, catalogue, owner)
         return RedirectResponse(url_of(await keep(request, draft)), 303)
     except (InputError, StoreUnavailableError) as error:
         problem = Problem.of(error)
     except Problem as error:
         problem = error
-    return await compute(request, "pages", _refused, request, problem, posted)
+    return await compute(request, "pages", _refused, request, problem, save)
 
 
 def _read_form(body: bytes) -> SaveForm:
@@ -92,14 +92,14 @@ def _read_form(body: bytes) -> SaveForm:
     return SaveForm(pairs, named.get("once", ""), link_reader.parse(pairs))
 
 
-def _draft(posted: SaveForm, catalogue: Catalogue, owner: str | None) -> Draft:
-    form, answer = calculator.answered(posted.form, catalogue)
+def _draft(save: SaveForm, catalogue: Catalogue, owner: str | None) -> Draft:
+    form, answer = calculator.form_and_answer(save.form, catalogue)
     if answer is None:
         errors = [((problem.name,), problem.message.text) for problem in form.problems]
         raise Problem(422, N_("the inputs have errors: correct them on the page, then save"), errors)
     values = {field: form.labels[name] for name, field in FIELDS.items()}
     labels = Labels(**values, ordering_code=_code(form, answer))
-    return draft_of(catalogue, answer.application, labels, posted.key, owner)
+    return draft_of(catalogue, answer.application, labels, save.key, owner)
 
 
 def _code(form: Form, answer: LiveResult) -> str | None:
@@ -110,11 +110,11 @@ def _code(form: Form, answer: LiveResult) -> str | None:
     return answer.order.text if chosen else None
 
 
-def _refused(request: Request, problem: Problem, posted: SaveForm) -> Response:
+def _refused(request: Request, problem: Problem, save: SaveForm) -> Response:
     """Page with the reason, which keeps the typed inputs."""
-    spent = problem.status_code == 410  # saving it again is then deliberate
-    once_more = calculator.once_key() if spent else posted.once
-    return reason(request, REASON, problem, posted=posted, form=posted.form, once_more=once_more)
+    is_spent = problem.status_code == 410  # saving it again is then deliberate
+    once_more = calculator.once_key() if is_spent else save.once
+    return reason(request, REASON, problem, posted=save, form=save.form, once_more=once_more)
 
 
 router = APIRouter(include_in_schema=False)
