@@ -2,7 +2,7 @@
 
 import json
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
@@ -43,6 +43,14 @@ MAKERS: dict[str, Callable[..., bytes]] = {
 }
 
 
+@pytest.fixture(scope="module", autouse=True)
+def each_file_read_once() -> Iterator[None]:
+    """What is compared is mostly the same file made again, which pypdf takes longest to read."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Format, "lines", cache(Format.lines))
+        yield
+
+
 @pytest.mark.parametrize("case", ["everything", "nothing suitable", "extremes"])
 @pytest.mark.parametrize("kind", MAKERS)
 def test_a_file_of_this_version_is_the_same_in_any_language_and_unit(
@@ -60,10 +68,9 @@ def test_a_file_of_this_version_is_the_same_in_any_language_and_unit(
 def test_one_altered_digit_anywhere_on_a_report_is_named(
     case: str, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Digits are altered by pikepdf, in the content of the page; the report to compare with is made and read once."""
+    """Digits are altered by pikepdf, in the content of the page; the report to compare with is made once."""
     report = pdf(typed_export_of(CASES[case], catalogue), ENGLISH)
     monkeypatch.setattr(FileFormat, "content", lambda *_: report)
-    monkeypatch.setattr(Format, "lines", cache(Format.lines))
     count = count_of_digits(report)
     assert count > 500
     for number in random.Random(53).sample(range(count), 12):
@@ -201,11 +208,8 @@ def test_an_altered_figure_of_an_earlier_version_is_named(catalogue: Catalogue) 
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_a_digit_altered_on_a_report_of_an_earlier_version_is_named(
-    version: str, catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_digit_altered_on_a_report_of_an_earlier_version_is_named(version: str, catalogue: Catalogue) -> None:
     """As differing, or among what can't be checked with its line; numbers of tables and pages may escape."""
-    monkeypatch.setattr(Format, "lines", cache(Format.lines))  # reads the reports of today once
     report = file_of(version, "report.pdf")
     plain, named = verify(report, catalogue), 0
     for number in random.Random(7).sample(range(count_of_digits(report)), 6):
