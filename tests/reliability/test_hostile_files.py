@@ -134,7 +134,7 @@ def at_work(service: Service) -> list[int]:
 
 
 def test_many_files_at_once_are_read_one_by_one_and_the_rest_is_asked_to_come_again(tmp_path: Path) -> None:
-    content = made("number formats")  # a second of work
+    content = made("twenty wide sheets")  # half a second of work
     statuses: Counter[int] = Counter()
 
     def send(service: Service) -> None:
