@@ -160,7 +160,7 @@ def test_beside_a_caller_that_takes_all_it_may_another_is_answered(name: str, pr
 
 def test_beside_greedy_callers_at_every_pool_another_is_answered_at_each(proxy: Proxy, soak: bool) -> None:
     count = 20 if soak else 1
-    pools = POOLS if soak else {name: POOLS[name] for name in ("pages", "batches", "files read", "fleets")}
+    pools = POOLS if soak else {name: POOLS[name] for name in ("pages", "files read")}
     with ExitStack() as stack:
         enough = threading.Event()
         for number, trial in enumerate(pools.values()):
