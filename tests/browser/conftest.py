@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 from urllib.request import urlopen
 
@@ -198,14 +199,28 @@ def in_german(page: Page) -> None:
     page.wait_for_load_state()
 
 
-def violations(page: Page) -> list[tuple[str, list[str]]]:
-    """Rule and elements of each violation that axe finds in both themes; only contrast depends on the theme."""
+Violations = list[tuple[str, list[str]]]
+"""Rule and elements of each violation that axe finds."""
+
+
+def violations(page: Page) -> Violations:
+    """Violations in both themes; only contrast depends on the theme."""
     page.evaluate(AXE.read_text())
     # The bar at the foot covers content that is scrolled under it, possibly part of a field.
     page.evaluate("document.querySelectorAll('.jump').forEach(bar => { bar.style.position = 'static' })")
-    found = page.evaluate("rules => axe.run({ rules, resultTypes: ['violations'] })", ASKED_FOR)["violations"]
+    found = _axe(page, {"rules": ASKED_FOR})
     page.emulate_media(color_scheme="dark")
-    found += page.evaluate("axe.run({ runOnly: ['color-contrast'], resultTypes: ['violations'] })")["violations"]
+    return found + _axe(page, {"runOnly": ["color-contrast"]})
+
+
+def violations_in_forced_colours(page: Page) -> Violations:
+    """Violations on a page that `violations` has seen; its contrast is then the system's."""
+    page.emulate_media(forced_colors="active")
+    return _axe(page, {"rules": ASKED_FOR | {"color-contrast": {"enabled": False}}})
+
+
+def _axe(page: Page, options: dict[str, Any]) -> Violations:
+    found = page.evaluate("options => axe.run({ ...options, resultTypes: ['violations'] })", options)["violations"]
     return [(entry["id"], [node["html"] for node in entry["nodes"]]) for entry in found]
 
 
