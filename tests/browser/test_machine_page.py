@@ -109,9 +109,8 @@ def test_a_phone_has_room_for_a_utilisation_far_beyond_every_gear(visitor: Visit
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
-@pytest.mark.parametrize("dark", [False, True])
-def test_a_phone_shows_every_axis_and_its_marks(visitor: Visitor, machine: str, dark: bool) -> None:
-    page = visitor.open(machine, 390, dark=dark, touch=True)
+def test_a_phone_shows_every_axis_and_its_marks(visitor: Visitor, machine: str) -> None:
+    page = visitor.open(machine, 390, touch=True)
 
     assert page.evaluate("document.documentElement.scrollWidth") == 390
     for name in ("Infeed belt", "Press ram", "Pallet lift", "Carton erector"):
@@ -154,11 +153,10 @@ def revised(server: str, machine: str) -> str:
 
 
 @pytest.mark.parametrize("width", [1440, 1024, 390])
-@pytest.mark.parametrize("dark", [False, True])
 def test_what_changed_since_the_revision_stands_in_the_table_and_beside_it(
-    visitor: Visitor, revised: str, width: int, dark: bool
+    visitor: Visitor, revised: str, width: int
 ) -> None:
-    page = visitor.open(f"{revised}?show=changed", width, dark=dark, touch=width < 600)
+    page = visitor.open(f"{revised}?show=changed", width, touch=width < 600)
 
     beside = page.get_by_role("region", name="Changed since revision A")
     expect(beside).to_contain_text("Removed: Pallet lift")

@@ -205,7 +205,9 @@ def test_the_result_of_an_earlier_request_names_the_cell_that_is_still_to_enter(
 
 
 @pytest.mark.parametrize(("width", "panel"), [(1440, 700), (1920, 760), (1300, 580), (1024, 1024)])
-def test_the_panel_widens_for_more_columns_and_a_move_stays_one_row(visitor: Visitor, width: int, panel: int) -> None:
+def test_the_panel_widens_for_more_columns_and_a_move_stays_one_row(
+    visitor: Visitor, soak: bool, width: int, panel: int
+) -> None:
     page = visitor.open(f"{RAMPS}&pn=Raise&pn=Load&FRi=100&FRi=", width)
     form = page.locator("#application").bounding_box()
     cells = page.locator("#move-0 > :is(td, th)").evaluate_all(
@@ -221,7 +223,8 @@ def test_the_panel_widens_for_more_columns_and_a_move_stays_one_row(visitor: Vis
         == []
     )
     expect(page.get_by_role("columnheader", name="up", exact=True)).to_be_visible()
-    assert violations(page) == []
+    if soak or width == 1024:  # the elements are the same at every width
+        assert violations(page) == []
 
 
 def test_ramps_turn_from_times_into_accelerations_and_back(visitor: Visitor) -> None:

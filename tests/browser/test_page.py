@@ -334,11 +334,11 @@ def test_nothing_makes_the_page_scroll_sideways(visitor: Visitor, width: int) ->
     assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
-# All sections are checked on a phone, one below the other as without script.
+# All sections are checked on a phone, one below the other as without script; test_standards.py does so unfolded.
 @pytest.mark.parametrize(
     ("path", "width"),
     [
-        pytest.param(EXAMPLE, 390),
+        pytest.param(EXAMPLE, 390, marks=pytest.mark.soak),
         pytest.param(EXAMPLE, 1440, marks=pytest.mark.soak),
         pytest.param(EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), 390, marks=pytest.mark.soak),
         pytest.param(EXAMPLE.replace("&i=5", "&FR=500&gear=14A-5"), 1440),

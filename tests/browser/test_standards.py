@@ -56,9 +56,9 @@ def saved(server: str) -> str:
     return str(httpx.post(f"{server}/api/v1/selections", json=body, trust_env=False).json()["url"])
 
 
-def unfolded(visitor: Visitor, path: str, width: int, *, dark: bool = False, touch: bool = False) -> Page:
+def unfolded(visitor: Visitor, path: str, width: int, *, touch: bool = False) -> Page:
     """Page with everything unfolded."""
-    page = visitor.open(path, width, dark=dark, touch=touch)
+    page = visitor.open(path, width, touch=touch)
     if width < 600:
         show_all_sections(page)
     page.evaluate("document.querySelectorAll('details').forEach(part => { part.open = true })")

@@ -318,16 +318,11 @@ def test_table_is_pasted_by_touch_on_a_phone(visitor: Visitor) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") == 390
 
 
-@pytest.mark.parametrize("width", [390, pytest.param(1440, marks=pytest.mark.soak)])
+@pytest.mark.soak  # test_states.py checks these pages on a phone
+@pytest.mark.parametrize("width", [390, 1440])
 @pytest.mark.parametrize(
     "path",
-    [
-        pytest.param("/catalogue", marks=pytest.mark.soak),
-        "/catalogue/HPN-20A-5",
-        pytest.param("/catalogue/HPN-40A-5", marks=pytest.mark.soak),
-        pytest.param("/catalogue?size=11A&i=3", marks=pytest.mark.soak),
-        "/paste?T=1&n=2&t=3",
-    ],
+    ["/catalogue", "/catalogue/HPN-20A-5", "/catalogue/HPN-40A-5", "/catalogue?size=11A&i=3", "/paste?T=1&n=2&t=3"],
 )
 def test_accessibility_check_finds_nothing_on_the_pages_beside(visitor: Visitor, path: str, width: int) -> None:
     page = visitor.open(path, width=width)
