@@ -114,10 +114,17 @@ def test_no_file_keeps_another_caller_waiting_or_ends_the_service(
     assert errors == []
 
 
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """A service whose memory is not looked at."""
+    with serving(tmp_path_factory.mktemp("service"), SETTINGS) as running:
+        yield running
+
+
 @pytest.mark.parametrize("path", ["/paste", "/machines"])
-def test_callers_who_leave_leave_no_process_at_work(path: str, tmp_path: Path) -> None:
+def test_callers_who_leave_leave_no_process_at_work(path: str, service: Service) -> None:
     content = made("elements in one another")  # ten seconds of work
-    with serving(tmp_path, SETTINGS) as service, another_caller(service) as waits:
+    with another_caller(service) as waits:
         for _ in range(3):
             with pytest.raises(httpx.TimeoutException):
                 service.client.post(path, files={"file": ("a.xlsx", content)}, timeout=1)
@@ -133,18 +140,18 @@ def at_work(service: Service) -> list[int]:
     return [child for child in children_of(service.process.pid) if ticks(child) > before.get(child, 0) + 2]
 
 
-def test_many_files_at_once_are_read_one_by_one_and_the_rest_is_asked_to_come_again(tmp_path: Path) -> None:
+def test_many_files_at_once_are_read_one_by_one_and_the_rest_is_asked_to_come_again(service: Service) -> None:
     content = made("twenty wide sheets")  # half a second of work
     statuses: Counter[int] = Counter()
 
-    def send(service: Service) -> None:
+    def send() -> None:
         with httpx.Client(base_url=service.url, timeout=300, trust_env=False) as client:
             reply = client.post("/paste", files={"file": ("a.xlsx", content)})
         statuses[reply.status_code] += 1
         assert reply.status_code != 503 or int(reply.headers["Retry-After"]) > 0
 
-    with serving(tmp_path, SETTINGS) as service, another_caller(service) as waits:
-        threads = [threading.Thread(target=send, args=(service,)) for _ in range(12)]
+    with another_caller(service) as waits:
+        threads = [threading.Thread(target=send) for _ in range(12)]
         for thread in threads:
             thread.start()
         for thread in threads:
