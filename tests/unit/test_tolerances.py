@@ -65,6 +65,32 @@ def test_a_peak_with_a_tolerance_of_its_own_stays_above_its_torque() -> None:
     Application.model_validate(VARYING | {"tolerances": {"phases.0.peak_torque_Nm": {"percent": 10}}})
 
 
+def test_an_rms_beside_a_peak_that_follows_the_torque_stays_below_it() -> None:
+    """The peak of 40 Nm is that of the torque, so an RMS of 39 Nm has room for 1 Nm."""
+    phases = cycle(phase(40, 250, rms_torque_Nm=39), phase(0, 100))
+    for tolerances in (
+        {"phases.0.rms_torque_Nm": {"absolute": 1.1}},
+        {"phases.0.rms_torque_Nm": {"absolute": 0.9}, "torque_Nm": {"absolute": 0.2}},
+    ):
+        assert faults(phases, tolerances) == [("phases.0.rms_torque_Nm", "tolerance_held")]
+    Application.model_validate(phases | {"tolerances": {"phases.0.rms_torque_Nm": {"absolute": 0.9}}})
+
+
+def test_the_worst_corner_of_a_torque_across_0_beside_an_rms_is_an_application(catalogue: Catalogue) -> None:
+    """The tolerance of 15 Nm is added to the RMS and to the peak, which is that of the torque: 23 and 25 Nm."""
+    motor = {"motor": {"rated_torque_Nm": 2}, "sizes": ["32A"], "ratios": [5]}
+    tolerances = {"torque_Nm": {"minus": {"absolute": 15}}}
+    reply = answer(cycle(phase(10, 100, rms_torque_Nm=8), requirements=motor, tolerances=tolerances), catalogue)
+
+    (worst,) = reply["candidates"]
+    used = {check["code"]: check["worst"] for check in worst["checks"]}
+    (case,) = answer(reply["tolerance"]["case"], catalogue)["candidates"]
+    at_case = {check["code"]: check["utilisation"] for check in case["checks"]}
+    assert reply["tolerance"]["case"]["duty_cycle"]["phases"][0]["peak_torque_Nm"] == 25
+    assert used["motor_rated_torque"] == pytest.approx(23 / 5 / 2) == at_case["motor_rated_torque"]
+    assert used["repeated_peak_torque"] == pytest.approx(25 / 376) == at_case["repeated_peak_torque"]
+
+
 SYMMETRIC = {
     "a torque from -60 to 60": phase(20, 250, radial_N=100),
     "a peak that is 80 more at both ends": phase(20, 250, peak_torque_Nm=40, radial_N=100),

@@ -325,9 +325,14 @@ def _of_phase(
 ) -> Iterator[tuple[Place, Any]]:
     """Errors of a phase with a tolerance of its own on a peak, the RMS or the least torque."""
 
+    def given(name: str) -> float | None:
+        """A figure as typed; a peak that is not typed follows the torque, and limits a typed RMS."""
+        value: float | None = getattr(phase, name)
+        return phase.torque_Nm if name == "peak_torque_Nm" and value is None else value
+
     def ends(name: str) -> tuple[float, float]:
         interval = intervals.get(("phases", number, name))
-        value = abs(getattr(phase, name))
+        value = abs(given(name) or 0.0)
         if interval is None:
             moving = intervals.get(("phases", number, name.partition("_")[2]))
             return moved_by(moving, value, is_least=name == "least_torque_Nm") if moving else (value, value)
@@ -341,7 +346,7 @@ def _of_phase(
         ("least_torque_Nm", "torque_Nm"),
         ("least_torque_Nm", "rms_torque_Nm"),
     ):
-        known = getattr(phase, lower) is not None and getattr(phase, upper) is not None
+        known = given(lower) is not None and given(upper) is not None
         if own.place[2] in (lower, upper) and known and ends(lower)[1] > ends(upper)[0] * (1 + ROOM):
             yield (own.path,), _overlap(upper, lower)
 

@@ -117,10 +117,18 @@ class Box:
 
     @cached_property
     def own(self) -> Mapping[str, NDArray[np.bool_]]:
-        """True for phases with a given value of a figure that otherwise follows another, shape (phases,)."""
+        """True for phases with a value of its own of a figure that otherwise follows another, shape (phases,).
+
+        A peak is its phase's own also beside a given RMS whose torque may reach 0: it stays above that RMS.
+        """
         phases = self.application.duty_cycle.load_phases
         names = ("peak_torque_Nm", "rms_torque_Nm", "least_torque_Nm", "peak_speed_rpm")
-        return {name: np.array([getattr(phase, name) is not None for phase in phases]) for name in names}
+        own = {name: np.array([getattr(phase, name) is not None for phase in phases]) for name in names}
+        for one in self.intervals:
+            if one.place[::2] == ("phases", "torque_Nm") and one.low <= 0 <= one.high:
+                phase = int(one.place[1])
+                own["peak_torque_Nm"][phase] |= own["rms_torque_Nm"][phase]
+        return own
 
     @cached_property
     def moved(self) -> MovedInputs:
