@@ -7,6 +7,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -330,3 +331,40 @@ def test_over_tolerances_of_a_motion_the_ends_of_each_input_count_and_nothing_is
                     assert not check.exact
                     assert isinstance(check.worst, float)
                     assert check.worst >= least * (1 - 1e-9)
+
+
+@pytest.mark.parametrize("inertia", [None, 4e-4])
+@pytest.mark.parametrize("angle", [150.0, -150.0])
+def test_along_the_course_the_efficiency_is_read_at_the_torque_of_each_instant(
+    catalogues: tuple[Catalogue, Catalogue], angle: float, inertia: float | None
+) -> None:
+    """Gravity loads the arm most in its slow first half, the curve is low in its fast second one.
+
+    The other way steps through time. η at the phase's peak, as for a typed phase, would be too high at lower torques.
+    """
+    J, held, time, i = 0.4, 2.0 * 9.80665 * 0.4, 0.8, 5
+    curve = [(0.0, 9.0), (600.0, 8.0), (1200.0, 2.0), (3000.0, 1.0)]
+    t = np.linspace(0, time, 800_001)
+    steep, sense = abs(angle) / (time / 2) ** 2, math.copysign(1, angle)
+    first = t <= time / 2
+    travel = np.where(first, steep * t**2 / 2, abs(angle) - steep * (time - t) ** 2 / 2)
+    speed, alpha = np.where(first, t, time - t) * steep / 6 * i, np.radians(steep) * np.where(first, 1, -1) * sense
+    T = J * alpha + held * np.cos(np.radians(travel * sense)) + 12.0
+    eta = np.interp(np.abs(T), *EFFICIENCY)
+    if inertia is None:
+        M = np.abs(T) / eta / i + OWN["HPN-20A-5"][1]
+    else:
+        own = (inertia + OWN["HPN-20A-5"][0]) * i * alpha + OWN["HPN-20A-5"][1] * sense
+        M = np.abs(np.where(T * sense >= 0, T / eta, T * eta) / i + own)
+    share = M / np.interp(speed, *np.array(curve).T)
+
+    arm = {"type": "rotary", "inertia_kgm2": J, "gravity_mass_kg": 2.0, "gravity_radius_mm": 400.0}
+    move = {"profile": "triangular", "angle_deg": angle, "time_s": time, "external_torque_Nm": 12.0}
+    points = [{"speed_rpm": n, "continuous_Nm": 1.0, "peak_Nm": M_p} for n, M_p in curve]
+    motor = {"curve": points} | ({} if inertia is None else {"inertia_kgm2": inertia})
+    asked = {"sizes": ["20A"], "ratios": [i], "motor": motor}
+    document = {"duty_cycle": {"motion": {"mechanism": arm, "moves": [move]}}, "requirements": asked}
+    gear = select(Application.model_validate(document), catalogues[True]).candidate("HPN-20A-5")
+    assert gear is not None
+    [found] = [check.utilisation for check in gear.checks if check.code == "motor_peak_torque"]
+    assert found == pytest.approx(share.max(), rel=1e-5)  # a step is 1e-6 of the time

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from hpn.catalogue import Catalogue, GearList
 from hpn.engine.duty import Duty
 from hpn.engine.input_arrays import CURVE
-from hpn.engine.motor_torques import asked_in, courses_once, efficiency_at, kinds_of, peaks_by_phase
+from hpn.engine.motor_torques import asked_in, courses_once, kinds_of, lines_of_efficiency, peaks_by_phase
 from hpn.physics.equations import ROUNDING, FloatArray, total
 from hpn.physics.motion import Course, DriveTrains, judged_along
 from hpn.physics.torque_curve import TorqueCurves
@@ -119,13 +119,14 @@ class _Judge:
             for path in ("requirements.motor.inertia_kgm2", "duty_cycle.pause_s", "requirements.efficiency")
         )
         gears = [self._gears.rows[place] for place in self._places.tolist()]
-        known = np.array([efficiency_at(course.peak_torque_Nm, gear, self._catalogue) for gear in gears])
+        loaded, known = lines_of_efficiency(gears, self._catalogue)
         own_inertia, without_load = (
             np.nan_to_num(column[self._places])[kind] for column in (columns.inertia_kgm2, columns.no_load_torque_Nm)
         )
         trains = DriveTrains(
             curve=own[row],
             ratio=self._ratio[kind],
+            loaded_Nm=loaded[kind],
             efficiency=np.where(np.isnan(stated)[:, None], known[kind], stated[:, None]),
             inertia_kgm2=inertia + own_inertia,
             no_load_torque_Nm=without_load,

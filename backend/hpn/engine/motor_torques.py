@@ -244,6 +244,21 @@ def efficiency_at(torque_Nm: FloatArray, gear: Gear, catalogue: Catalogue, state
     return np.full(np.shape(torque_Nm), 1.0 if np.isnan(stated) else stated)
 
 
+def lines_of_efficiency(gears: Sequence[Gear], catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
+    """Torques in Nm and efficiencies of the gears' supplied curves, shape (gears, points); without one, 1 at any
+    torque.
+
+    Shorter curves end at infinite torques.
+    """
+    curves = [catalogue.efficiency.get(gear.designation, ((0.0,), (1.0,))) for gear in gears]
+    shape = len(gears), max(len(torque) for torque, _ in curves)
+    torques, efficiencies = np.full(shape, np.inf), np.ones(shape)
+    for row, (torque, efficiency) in enumerate(curves):
+        torques[row, : len(torque)], efficiencies[row] = torque, efficiency[-1]
+        efficiencies[row, : len(torque)] = efficiency
+    return torques, efficiencies
+
+
 def efficiencies(duty: Duty, gear: Gear, catalogue: Catalogue) -> tuple[FloatArray, FloatArray]:
     """Efficiency of a gear in each phase of one application, at the phase's peak and at its RMS."""
     phases, stated = duty.phases, duty.inputs["requirements.efficiency"].item()

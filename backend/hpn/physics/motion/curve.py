@@ -1,19 +1,21 @@
 """A motion against torque curves of motors: mean square of the continuous torque, and the point nearest to the peak.
 
-The course is cut where the motor's speed passes a point of its curve, so that in each window torque over speed is one
-line.
+The course is cut where the motor's speed passes a point of its curve, and the gear's torque a point of its efficiency:
+in each window torque over speed is one line, and so is efficiency over torque.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hpn.physics.equations import FloatArray, total
 from hpn.physics.motion.course import Course
 from hpn.physics.motion.mechanisms import RPM
-from hpn.physics.motion.motor import bow, share_of_torque
+from hpn.physics.motion.motor import bow
 from hpn.physics.motion.pieces import Pieces, PlaceArray
-from hpn.physics.motion.torque import torque_at
+from hpn.physics.motion.torque import torque_at, zeros
 from hpn.physics.torque_curve import TorqueCurves
 
 WINDOWS_AT_ONCE = 50_000
@@ -33,12 +35,15 @@ class DriveTrains:
     """Motors on gears, shape (trains,) each: the row of the motor's curve, the ratio, and inertia and torque at the
     motor.
 
-    `efficiency` has shape (trains, phases). `inertia_kgm2` is that of motor and gear at the input; where it is NaN it
-    is left out, and the motor is taken to drive throughout, as in T / (i η) + T_0 of a phase.
+    `efficiency` has shape (trains, points), at the rising torques `loaded_Nm` of the gear's output and between them by
+    straight lines; beyond them the value at the nearer end counts, and a shorter line ends at infinite torques.
+    `inertia_kgm2` is that of motor and gear at the input; where it is NaN it is left out, and the motor is taken to
+    drive throughout, as in T / (i η) + T_0 of a phase.
     """
 
     curve: PlaceArray
     ratio: FloatArray
+    loaded_Nm: FloatArray
     efficiency: FloatArray
     inertia_kgm2: FloatArray
     no_load_torque_Nm: FloatArray
@@ -53,13 +58,15 @@ class DriveTrains:
 class _Windows:
     """Windows of the pieces of a course for each train, shape (windows,).
 
-    Places of train and piece, and the segment of the train's curve that the speed stays in.
+    Places of train and piece, and the segments of the train's curve and of its line of efficiencies that speed and
+    torque stay in.
     """
 
     train: PlaceArray
     pieces: Pieces
     piece: PlaceArray
     segment: PlaceArray
+    loading: PlaceArray
 
 
 def judged_along(
@@ -142,10 +149,18 @@ def _golden(look: "_Look", low: FloatArray, high: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class _Look:
-    """The motor's torque in windows, and the line of its peak curve over the shaft's speed; shape (windows, 1) each."""
+    """The motor's torque in windows, and the line of its peak curve over the shaft's speed; shape (windows, 1) each.
+
+    `factor` gives the gear's torque T, and `unloaded` + `rise` |T| its efficiency; `drives` is False where the load
+    drives.
+    """
 
     pieces: Pieces
-    of_torque: FloatArray
+    factor: FloatArray
+    ratio: FloatArray
+    unloaded: FloatArray
+    rise: FloatArray
+    drives: NDArray[np.bool_]
     of_acceleration: FloatArray
     without_load: FloatArray
     base: FloatArray
@@ -158,7 +173,9 @@ class _Look:
     def torque_and_limit(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Magnitude of the torque, and the peak torque at the speed, at instants (windows, n), in Nm."""
         p = self.pieces
-        torque = self.of_torque * torque_at(p, t) + self.of_acceleration * p.acceleration_at(t)
+        T = self.factor * torque_at(p, t)
+        eta = self.unloaded + self.rise * np.abs(T)
+        torque = np.where(self.drives, T / eta, T * eta) / self.ratio + self.of_acceleration * p.acceleration_at(t)
         return np.abs(torque + self.without_load), self.base + self.slope * np.abs(p.speed_at(t))
 
     def share(self, t: FloatArray) -> FloatArray:
@@ -171,24 +188,40 @@ def _looked_at(
     course: Course, curves: TorqueCurves, trains: DriveTrains, windows: _Windows
 ) -> tuple[_Look, FloatArray]:
     """Motors in all windows, and upper bounds of the torque's rise above the line between the ends of each."""
-    train, piece, rows = windows.train, windows.piece, trains.curve[windows.train]
-    known, moving = ~np.isnan(trains.inertia_kgm2)[:, None], course.speed_rpm != 0
-    driven = 1 / (trains.efficiency * trains.ratio[:, None])
-    share = np.where(known, share_of_torque(course, trains.ratio, trains.efficiency), driven)
-    sense = np.where(known, np.sign(course.speed_rpm), np.copysign(moving, course.torque_Nm))
-    of_torque = share[:, course.phase] * course.factor
-    of_acceleration = (np.nan_to_num(trains.inertia_kgm2) * trains.ratio * course.load.ratio)[:, None]
-    turns = windows.pieces.sign != 0
+    train, piece, rows, p = windows.train, windows.piece, trains.curve[windows.train], windows.pieces
+    known, phase, ratio = ~np.isnan(trains.inertia_kgm2)[train], course.phase[piece], trains.ratio[train]
+    n, T = course.speed_rpm[phase], course.torque_Nm[phase]
+    drives, sense = ~known | (T * n >= 0), np.where(known, np.sign(n), np.copysign(n != 0, T))
+    unloaded, rise = _line_of_efficiency(trains, train, windows.loading)
+    of_acceleration = np.nan_to_num(trains.inertia_kgm2)[train] * ratio * course.load.ratio
+    turns = p.sign != 0
     base, slope = (line[rows, windows.segment] for line in curves.peak)
-    columns = (
-        of_torque[train, piece],
-        of_acceleration[train, 0] * turns,
-        (trains.no_load_torque_Nm[:, None] * sense)[train, course.phase[piece]],
-        base,
-        slope * trains.ratio[train] * (course.load.ratio / RPM) * turns,
+    look = _Look(
+        pieces=p.transposed,
+        factor=course.factor[piece][:, None],
+        ratio=ratio[:, None],
+        unloaded=unloaded[:, None],
+        rise=rise[:, None],
+        drives=drives[:, None],
+        of_acceleration=(of_acceleration * turns)[:, None],
+        without_load=(trains.no_load_torque_Nm[train] * sense)[:, None],
+        base=base[:, None],
+        slope=(slope * ratio * (course.load.ratio / RPM) * turns)[:, None],
     )
-    look = _Look(windows.pieces.transposed, *(column[:, None] for column in columns))
-    return look, bow(course.pieces, of_torque, of_acceleration)[train, piece]
+    share = np.where(drives, 1 / unloaded, unloaded) / ratio * course.factor[piece]
+    return look, np.where(rise == 0, bow(p, share, of_acceleration), np.inf)
+
+
+def _line_of_efficiency(trains: DriveTrains, train: PlaceArray, loading: PlaceArray) -> tuple[FloatArray, FloatArray]:
+    """Efficiency at no load and its rise with the torque, by the line of each window's segment."""
+    last = trains.efficiency.shape[1] - 1
+    (T0, T1), (eta0, eta1) = (
+        (values[train, np.maximum(loading - 1, 0)], values[train, np.minimum(loading, last)])
+        for values in (trains.loaded_Nm, trains.efficiency)
+    )
+    with np.errstate(all="ignore"):
+        rise = np.where(np.isfinite(T1) & (T1 > T0), (eta1 - eta0) / (T1 - T0), 0.0)
+    return eta0 - np.where(rise == 0, 0.0, rise * T0), rise
 
 
 # --- Windows ----------------------------------------------------------------------------------------------------------
@@ -208,24 +241,35 @@ def _output_speed(course: Course, p: Pieces, t: FloatArray) -> FloatArray:
 
 
 def _windows(course: Course, curves: TorqueCurves, trains: DriveTrains) -> _Windows:
-    """Pieces of every train, cut where the speed passes a point of its curve."""
+    """Pieces of every train, cut where the speed passes a point of its curve, or the torque one of its efficiencies."""
     p, curve, ratio = course.pieces, trains.curve, trains.ratio
     count = len(p)
     knots = (curves.knots_rpm[curve] / ratio[:, None])[:, None, 1:]  # at the gear's output
-    ends = [_output_speed(course, p, t)[:, None] for t in (p.start_s, p.end_s)]
-    train, piece, knot = np.nonzero((knots > np.minimum(*ends)) & (knots < np.maximum(*ends)))
+    train, piece, knot = _crossed(knots, [_output_speed(course, p, t) for t in (p.start_s, p.end_s)])
     speed = knots[train, 0, knot] * (RPM / course.load.ratio) * p.sign[piece]
-    instants = _instants_at(p.at(piece), speed)
-    places = np.concatenate((np.arange(len(ratio) * count), train * count + piece))
-    starts = np.concatenate((np.tile(p.start_s, len(ratio)), instants))
+    loaded, loads = trains.loaded_Nm[:, None], [course.factor * np.abs(torque_at(p, t)) for t in (p.start_s, p.end_s)]
+    loaded_train, loaded_piece, knot = _crossed(loaded, loads)
+    some, factor, load = p.at(loaded_piece), course.factor[loaded_piece], loaded[loaded_train, 0, knot]
+    loaded_at = zeros(lambda t: factor * np.abs(torque_at(some, t)) - load, some.start_s, some.end_s)
+    places = np.concatenate((np.arange(len(ratio) * count), train * count + piece, loaded_train * count + loaded_piece))
+    starts = np.concatenate((np.tile(p.start_s, len(ratio)), _instants_at(p.at(piece), speed), loaded_at))
     order = np.lexsort((starts, places))
     places, starts = places[order], starts[order]
     train, piece = places // count, places % count
     ends_here = np.append(np.diff(places) != 0, True)
     stops = np.where(ends_here, p.end_s[piece], np.append(starts[1:], 0.0))
     pieces = p.at(piece).windows(starts, stops)
-    middle = _output_speed(course, pieces, (starts + stops) / 2) * ratio[train]
-    return _Windows(train, pieces, piece, curves.segment_at(curve[train], middle))
+    middle = (starts + stops) / 2
+    segment = curves.segment_at(curve[train], _output_speed(course, pieces, middle) * ratio[train])
+    T = np.abs(torque_at(pieces, middle)) * course.factor[piece]
+    loading = (trains.loaded_Nm[train] < T[:, None]).sum(axis=1)
+    return _Windows(train, pieces, piece, segment, loading)
+
+
+def _crossed(knots: FloatArray, ends: Sequence[FloatArray]) -> tuple[PlaceArray, ...]:
+    """Places of train, piece and knot where a value passes a knot (trains, 1, knots) between the ends of a piece."""
+    start, end = (values[:, None] for values in ends)
+    return np.nonzero((knots > np.minimum(start, end)) & (knots < np.maximum(start, end)))
 
 
 def _instants_at(p: Pieces, speed: FloatArray) -> FloatArray:

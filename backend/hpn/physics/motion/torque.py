@@ -58,10 +58,10 @@ def cut_at_zeros(function: Function, pieces: Pieces) -> Pieces:
     if not crossed.size:
         return pieces
     some = pieces.at(crossed)
-    zeros = _zeros(lambda t: function(some, t), some.start_s, some.end_s)
+    instants = zeros(lambda t: function(some, t), some.start_s, some.end_s)
     room = EDGE * (some.end_s - some.start_s)
-    inside = (zeros - some.start_s > room) & (some.end_s - zeros > room)
-    return cut(pieces, crossed[inside], zeros[inside])
+    inside = (instants - some.start_s > room) & (some.end_s - instants > room)
+    return cut(pieces, crossed[inside], instants[inside])
 
 
 def cut(pieces: Pieces, places: PlaceArray, instants: FloatArray) -> Pieces:
@@ -75,7 +75,7 @@ def cut(pieces: Pieces, places: PlaceArray, instants: FloatArray) -> Pieces:
     return result.windows(start_s, end_s)
 
 
-def _zeros(function: Callable[[FloatArray], FloatArray], a: FloatArray, b: FloatArray) -> FloatArray:
+def zeros(function: Callable[[FloatArray], FloatArray], a: FloatArray, b: FloatArray) -> FloatArray:
     """Zeros of a function between instants at which its signs differ.
 
     Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection. T. R. Chandrupatla,
