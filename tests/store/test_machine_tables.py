@@ -145,6 +145,7 @@ def test_a_wrong_cell_leaves_its_axis_open_and_loses_no_other(client: TestClient
     assert states == {"a": "open", "b": "open", "c": "open", "d": "open", "e": "open", "f": "suitable"}
     reasons = {each["name"]: each["answer"]["faults"][0]["pointer"] for each in found["axes"][:-1]}
     assert reasons["a"] == "/quantity" and reasons["b"] == "/requirements/life_h" and reasons["c"] == "/axis"
+    assert found["axes"][0]["application"]["duty_cycle"]["phases"] == [phase(40, 250, 2)]  # the cycle of a is kept
     changed = client.patch(f"{ADDRESS}/{found['id']}", json={"common": {"rank_by": "life"}}).json()
     assert {each["name"]: each["answer"]["status"] for each in changed["axes"]} == states  # no lost cell is forgotten
 

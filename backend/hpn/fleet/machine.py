@@ -75,7 +75,10 @@ class TableAxis(NamedTuple):
 
 
 def axes_in(rows: Sequence[Cells], faults: Sequence[CellFault] = ()) -> list[TableAxis]:
-    """Axes of the rows of a table, each once; an axis with a lost cell has only its name."""
+    """Axes of the rows of a table, each once; an axis with a lost cell has only its name.
+
+    A wrong quantity stays in the application, which is refused with it: the axis is open until it is edited.
+    """
     faults_by_axis = dict[int, list[CellFault]]()
     for fault in faults:
         faults_by_axis.setdefault(fault.row, []).append(fault)
@@ -100,21 +103,22 @@ def _axis(row: Cells, place: int, faults: list[CellFault]) -> TableAxis:
     if not faults and not is_of_machine:
         missing = [] if name is not None else [CellFault(place, AXIS, Sentence(REQUIRED), "missing")]
         faults = missing + [CellFault(place, *fault) for fault in faults_of_lists(row)]
-    quantity = row.get("quantity", 1.0)
+    quantity, wrong = row.get("quantity", 1.0), list[CellFault]()
     if not isinstance(quantity, float | int) or quantity not in range(1, MOST_OF_A_KIND + 1):
-        faults = [
-            *faults,
-            CellFault(place, "quantity", Sentence(NO_QUANTITY, {"most": Quantity(MOST_OF_A_KIND, "", 7)}), "quantity"),
-        ]
+        reason = Sentence(NO_QUANTITY, {"most": Quantity(MOST_OF_A_KIND, "", 7)})
+        row, wrong = {**row, "quantity": None}, [CellFault(place, "quantity", reason, "quantity")]
     if not faults:
         try:
-            return TableAxis(axis_of(row), name, wrong_cells(row, place))
+            axis = axis_of(row)
+            if wrong:
+                axis = axis.model_copy(update={"application": {**axis.application, "quantity": quantity}})
+            return TableAxis(axis, name, [*wrong, *wrong_cells(row, place)])
         except ValidationError as error:
             faults = [
                 CellFault(place, "axis_name" if at[0] == "name" else str(at[0]), sentence, code)
                 for at, sentence, code in sentences_of(error)
             ]
-    return TableAxis(Axis(), name[:LONGEST_NAME] if is_of_machine and name else name, faults)
+    return TableAxis(Axis(), name[:LONGEST_NAME] if is_of_machine and name else name, [*faults, *wrong])
 
 
 def wrong_cells(row: Cells, place: int) -> list[CellFault]:
