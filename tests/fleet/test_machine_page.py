@@ -79,6 +79,10 @@ def test_rows_show_own_values_quantity_and_gear_and_the_head_counts_gears(client
     assert "u 80 %" in row(page, "Press ram")
     shown = re.search(r'Weight, all gears</p>\s*<p class="value">\s*<data class="quantity" value="([^"]*)"', page)
     assert shown is not None and float(shown[1]) == pytest.approx(weight, rel=1e-12)  # a sum in another order
+    written = f"{weight:.2f}"  # in the head and under the list of gears alike
+    assert (
+        re.search(rf"Weight, all gears</p>.*?>{written}", page, re.S) and f'<td class="figure">{written}</td>' in page
+    )
     assert "For every axis Maximum utilisation u 90 %" in text_of(page)
     assert "% u = 90 %" in text_of(
         page[page.index('class="cell largest"') :]

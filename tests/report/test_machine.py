@@ -55,8 +55,8 @@ def test_the_title_page_says_what_the_answers_say(
     order = order_of(line.axes, catalogue)
     for gear in order.gears:
         assert gear.ordering_code in title
-        assert plain(reader.with_unit(reader.figure(gear.weight_kg, "kg"), "kg")) in title
-    weight = plain(reader.with_unit(reader.figure(summary.weight_kg, "kg"), "kg"))
+        assert plain(reader.with_unit(reader.mass(gear.weight_kg), "kg")) in title
+    weight = plain(reader.with_unit(reader.mass(summary.weight_kg), "kg"))
     assert weight in title and plain(reader.percent(summary.utilisation, 0.9)) in title
     said = f"{summary.suitable}{reader.text('of {count} axes suitable').format(count=40)}"
     assert plain(said).replace(" ", "") in title.replace(" ", "")

@@ -72,7 +72,7 @@ def test_the_workbook_of_differences_has_every_input_and_figure(changed: Differe
     assert inputs[(None, "Required gear life")] == (15000, 20000, "h")
     assert inputs[(6, "Torque, phase 1")] == (120, 87, "Nm")
     assert inputs[(7, "Name")][:2] == ("Magazine", "Magazine disc")
-    assert inputs[(1, "Maximum utilisation")][:2] == (0.8, 0.9)
+    assert inputs[(1, "Maximum utilisation")] == (80, 90, "%")
     found = changed.differences
     figures = rows_of(book, 2)[1:]
     assert len(figures) == sum(len(each.verdicts) + len(each.figures) for each in found.axes)

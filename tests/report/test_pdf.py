@@ -128,7 +128,7 @@ def _position(table: str, title: str) -> int:
 
 def test_every_input_stands_in_the_report(catalogue: Catalogue) -> None:
     page = text(pdf(typed_export_of(EVERYTHING, catalogue, reference="PLM-4711"), ENGLISH), pages=1)
-    for figure in ("−20", "250", "0.3", "900", "4 s", "200 Nm", "1000", "500 N", "1.2", "20000 h", "0.9", "0.95"):
+    for figure in ("−20", "250", "0.3", "900", "4 s", "200 Nm", "1000", "500 N", "1.2", "20000 h", "90 %", "0.95"):
         assert figure in page, figure
     for figure in ("4000 rpm", "20 Nm", "8 Nm", "25 °C", "7 arcmin", "5000 Nm/rad", "5 kg", "200 mm", "3, 5, 10, 25"):
         assert figure in page, figure

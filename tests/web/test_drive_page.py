@@ -136,3 +136,12 @@ def test_the_section_speaks_german(supplied: TestClient) -> None:
     for said in ("Am Umrichter einstellen", "Drehmoment und Drehzahl am Abtrieb", "Eigene Motoren"):
         assert said in part
     assert not re.search(r"\b(the|speed|torque|motors)\b", part)
+
+
+def test_the_drives_torque_limit_is_one_figure_and_never_rounded_up(client: TestClient) -> None:
+    """T_R / i by hand: 254 / 3 = 84.666…, which three digits would raise to 84.7."""
+    page = client.get(TYPED + "&i=3&size=32A").text
+
+    assert "Set the drive’s torque limit to 84.66 Nm." in words(page)
+    assert re.search(r"Torque limit 84\.66 Nm", words(drive(page)))
+    assert "Set the drive’s" not in words(drive(page))  # the head says it

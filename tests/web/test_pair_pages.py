@@ -187,3 +187,10 @@ def test_an_axis_of_a_machine_has_pairs_and_takes_one(keeping: TestClient, list_
 )
 def test_no_address_breaks_the_page(keeping: TestClient, list_id: str, tail: str) -> None:
     assert keeping.get(f"/pairs{tail}").status_code in (200, 422)
+
+
+def test_the_limit_of_a_pair_is_one_figure_in_sentence_and_column(keeping: TestClient, list_id: str) -> None:
+    """T_R / i by hand: 26 / 30 = 0.8666… Nm for HPN-11A-30, which three digits would raise to 0.867."""
+    page = keeping.get(query(TYPED, list=list_id, all="1", more="1", at="HPN-11A-30 S80-2.4")).text
+
+    assert "0.8666\u202fNm" in page and '<td class="figure">0.8666</td>' in page

@@ -11,7 +11,6 @@ from hpn.words.motion import MOTION
 from hpn.words.quantities import INPUTS
 from hpn.words.terms import JUDGED
 from hpn.words.titles import row_label
-from hpn.words.units import suffix_of
 from hpn.words.wording import N_, Named, Quantity, Sentence, listed
 
 _LOADING = ("duty_cycle.", "emergency_stop.", "output_load.")
@@ -63,7 +62,7 @@ def _line(code: str, named: Named, value: Any = None, kind: Kind = "entered") ->
         return Line(code, named, ", ".join(map(str, value)))
     if isinstance(value, bool):
         return Line(code, named, JUDGED[value] if code == "requirements.over_tolerance" else str(value), kind=kind)
-    return Line(code, named, value, suffix_of(code), kind)
+    return Line.entered(code, named, value, kind)
 
 
 def _points(curve: Sequence[CurvePoint]) -> Sentence:

@@ -9,13 +9,15 @@ from hpn.engine.notice import AREAS
 from hpn.words.designations import OTHERS
 from hpn.words.reader import Reader
 from hpn.words.terms import BEARING_MODELS, FOR_OTHERS, LIFE_BASES, MECHANISMS, POSITION_ERROR_AT, PROFILES, RANKINGS
-from hpn.words.wording import N_, Named, Sentence
+from hpn.words.units import suffix_of
+from hpn.words.wording import N_, Named, Quantity, Sentence
 
 Value = float | str | Sentence | Mapping[str, float]
 """A number in the unit of its line, a number for each size, or a text: a code, a msgid, the user's own, or a
 sentence.
 """
 
+LIMIT = "candidate.motor_torque_limit_Nm"
 Kind = Literal["entered", "computed", "published"]
 
 
@@ -38,6 +40,9 @@ WORDS: Mapping[str, str] = {
 TYPED = ("requirements.motor.designation", "requirements.motor.name", "phase.name", "motion.move.name")
 """Inputs with a text of the user's own."""
 
+SHARES = ("requirements.utilisation", "requirements.worst_case_utilisation")
+"""Inputs that are a share of 1, and shown in percent."""
+
 
 @dataclass(frozen=True, slots=True)
 class Line:
@@ -57,6 +62,13 @@ class Line:
     sign: str = ""
     is_lower_bound: bool = False
     is_supplied: bool = False
+
+    @classmethod
+    def entered(cls, code: str, named: Named, value: Value | None, kind: Kind = "entered") -> "Line":
+        """Line of an input with its unit, a utilisation in percent."""
+        if code in SHARES and isinstance(value, float | int):
+            return cls(code, named, float(f"{100 * value:.15g}"), "percent", kind)
+        return cls(code, named, value, suffix_of(code), kind)
 
     @property
     def field(self) -> str:
@@ -89,6 +101,8 @@ class Line:
         """
         if not isinstance(self.value, float | int):
             return str(self.value_for(reader) or "")
+        if self.code == LIMIT:
+            return reader.number(drive_limit(self.value))
         printed = self.kind == "published" and reader.measure(self.unit).same
         other = beside if isinstance(beside, float | int) else None
         exact = printed or self.kind == "entered"
@@ -113,6 +127,11 @@ class Line:
 
 def _size(size: str, reader: Reader) -> str:
     return reader.text(FOR_OTHERS) if size == OTHERS else size
+
+
+def drive_limit(limit_Nm: float) -> Quantity:
+    """Torque limit of the drive as it is shown everywhere: never above what keeps the gear at T_R."""
+    return Quantity(limit_Nm, "Nm", 4, "down")
 
 
 def known(lines: Iterable[Line]) -> list[Line]:

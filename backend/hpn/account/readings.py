@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hpn.account.lines import drive_limit
 from hpn.application import Application, LifeBasis, Motor, OutputLoad
 from hpn.catalogue import Catalogue
 from hpn.catalogue.gear import Gear
@@ -237,7 +238,7 @@ def torque_limit_of(candidate: Candidate, gear: Gear | None, application: Applic
     warnings = on_torque_limit(gear, limit_Nm=limit, need_Nm=need, peak_Nm=peak) if gear else ()
     sentences = {notice.code: notice.sentence for notice in warnings}
     values: dict[str, Value] = {
-        "limit": Quantity(limit, "Nm", 4, "down"),
+        "limit": drive_limit(limit),
         "share": Quantity(100 * limit / peak, "percent", 3, "down"),
         "peak": Quantity(peak, "Nm", 6),
     }

@@ -157,6 +157,10 @@ class Reader:
         """A number of the wire in the reader's unit with as many decimals as its neighbours in a column."""
         return self.written(f"{self.measure(unit).number(value):.{places}f}")
 
+    def mass(self, value: float | None) -> str:
+        """Mass of several gears: two decimals everywhere, with which lists add up."""
+        return NOTHING if value is None else self.fixed(value, "kg", 2)
+
     def with_unit(self, number: str, unit: str) -> str:
         """A written number with the reader's unit; without it where the unit is blank."""
         return f"{number}{GROUP}{self.unit(unit)}" if unit and number != NOTHING else number

@@ -45,7 +45,7 @@ def kinds_curve(steps: Sequence[tuple[int, float]], reader: Reader = DEFAULT) ->
         if is_inside:
             add(drawing, "circle", "disc now" if is_now else "disc", cx=x, cy=y, r=4.0)
         if is_now or written_at - x >= APART:
-            label = reader.exact(round(mass, 1))
+            label = reader.mass(mass)
             mark, height = (label, y) if is_inside else (f"↑ {label}", TOP)
             text(drawing, "phase", (WIDTH if is_now else x + 4, height - 9), mark, "end" if is_now else "start")
             written_at = WIDTH - APART + 4 if is_now else x + 4

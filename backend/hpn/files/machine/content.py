@@ -131,7 +131,7 @@ def _facts(export: MachineExport, reader: Reader) -> Iterator[tuple[str, str]]:
     yield text(N_("Axes, with quantity")), f"{reader.exact(summary.axes)}, {reader.exact(summary.quantity)}"
     yield text(N_("Kinds of gear")), reader.exact(summary.kinds)
     weight = Sentence(N_("Weight, {count} gears"), {"count": reader.exact(summary.gears)})
-    yield reader.sentence(weight), reader.with_unit(reader.figure(summary.weight_kg, "kg"), "kg")
+    yield reader.sentence(weight), reader.with_unit(reader.mass(summary.weight_kg), "kg")
     if summary.shortest_life_h is not None:
         life = reader.sentence(life_of(summary.shortest_life_h, summary.shortest_life_of).sentence)
         sentence = Sentence(N_("{life}, axis {number}"), {"life": life, "number": str(summary.shortest_life_axis)})
@@ -221,19 +221,19 @@ def _gears(export: MachineExport, reader: Reader) -> dict[str, Any]:
     for gear in order.gears:
         known = each.get(gear.designation)
         counts = (len(gear.axes), gear.quantity)
-        masses = (known.weight_kg if known else None, gear.weight_kg)
+        masses = (reader.figure(known.weight_kg if known else None, "kg"), reader.mass(gear.weight_kg))
         rows.append(
             [
                 gear.ordering_code,
                 ranges(gear.axes),
                 *map(reader.exact, counts),
-                *(reader.with_unit(reader.figure(mass, "kg"), "kg") for mass in masses),
+                *(reader.with_unit(mass, "kg") for mass in masses),
                 *[", ".join(gear.motors)] * names_motors,
             ]
         )
     kinds = reader.sentence(Sentence(KINDS, {"count": reader.exact(order.kinds)}))
     sums = (sum(len(gear.axes) for gear in order.gears), sum(gear.quantity for gear in order.gears))
-    whole = reader.with_unit(reader.figure(order.weight_kg, "kg"), "kg")
+    whole = reader.with_unit(reader.mass(order.weight_kg), "kg")
     return {
         "heads": list(map(reader.text, heads)),
         "rows": rows,

@@ -59,7 +59,7 @@ def line_of(path: str, value: Any) -> Line:
     if isinstance(value, bool):
         return Line(code, named, str(value))
     if isinstance(value, float | int | str) or value is None:
-        return Line(code, named, value or None if isinstance(value, str) else value, suffix_of(code))
+        return Line.entered(code, named, value or None if isinstance(value, str) else value)
     return Line(code, named, str(value))
 
 

@@ -12,7 +12,7 @@ REFUSALS: Mapping[str, str] = {
     "move_needs": N_("a move with the profile {profile} needs {field}"),
     "move_has_no": N_("a move with the profile {profile} has no {field}: leave it out"),
     "move_takes_two": N_(
-        "a move with the profile {profile} needs time_s with or without ramps, a speed with one or two ramps, or both "
+        "a move with the profile {profile} needs a time with or without ramps, a speed with one or two ramps, or both "
         "with at most one ramp (given: {given})"
     ),
     "move_takes_one": N_("a move with the profile {profile} needs one of {fields} (given: {given})"),

@@ -106,7 +106,11 @@ class DriveView:
             return []
         wind_up = stiffness.wind_up(torque_Nm=highest - lowest, torsional_stiffness_Nm_per_rad=K3).item()
         crossed = backlash if lowest <= 0 <= highest else 0.0
-        parts = ((N_("accuracy"), accuracy), (N_("backlash"), crossed), (N_("wind-up"), wind_up))
+        parts = (
+            (N_("accuracy"), accuracy),
+            (N_("backlash"), crossed),
+            (N_("wind-up from lowest to highest torque"), wind_up),
+        )
         return [(name, value) for name, value in parts if value > 0]
 
     @property

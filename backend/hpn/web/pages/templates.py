@@ -15,7 +15,7 @@ from jinja2.runtime import Context
 from markupsafe import Markup, escape
 from starlette.datastructures import State
 
-from hpn.account.lines import Line
+from hpn.account.lines import Line, drive_limit
 from hpn.account.readings import shortest_life, stiffness_of
 from hpn.catalogue.ordering import MOTOR_CODE, ordering_code
 from hpn.engine.candidates import REASONS, Candidate, reason_of
@@ -276,6 +276,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "as_read": _as_read,
     "as_typed": _as_typed,
     "named_reason": _named_reason,
+    "drive_limit": pass_context(lambda _, limit_Nm: current().number(drive_limit(limit_Nm))),
     "capital": lambda text: text[:1].upper() + text[1:],
     "figure": _figure,
     "followed": _followed,
@@ -303,6 +304,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
         for name in (
             "exact",
             "fixed",
+            "mass",
             "percent",
             "capped_percent",
             "unit",
