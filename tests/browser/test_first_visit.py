@@ -78,3 +78,9 @@ def test_what_is_refused_before_there_is_any_answer_is_said_in_the_result_and_be
     expect(page.get_by_label("Pitch diameter")).to_have_attribute("aria-invalid", "true")
     page.get_by_label("Pitch diameter").fill("80")
     expect(page.get_by_role("region", name="Result")).to_contain_text("suitable")
+
+
+def test_on_a_phone_a_mechanism_leads_to_its_fields(visitor: Visitor) -> None:
+    page = visitor.open("/?T=&n=&t=", 390)
+    page.get_by_role("link", name="Ball screw").click()
+    expect(page.get_by_label("Lead")).to_be_in_viewport()

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.browser.conftest import Visitor, answer_held_back, violations
+from tests.browser.conftest import Visitor, answer_held_back, in_german, violations
 
 SAVED = re.compile("/selections/[A-Za-z0-9_-]{22}$")
 ON_DESK = pytest.mark.parametrize("width", [1440, pytest.param(390, marks=pytest.mark.soak)])
@@ -279,3 +279,22 @@ def test_the_phases_of_a_saved_motion_stay_within_its_input(visitor: Visitor) ->
     assert cell and beside and cell["x"] + cell["width"] <= beside["x"]
     table.focus()
     assert table.evaluate("node => getComputedStyle(node).overflowX") == "auto"
+
+
+def test_the_longest_profile_is_not_cut(visitor: Visitor) -> None:
+    page = visitor.open("/?mech=rotary&J=2&mv=modified_sine&ms=60&mt=0.4")
+    _expect_whole(page, "Modified sine")
+    in_german(page)
+    _expect_whole(page, "Modifizierter Sinus")
+
+
+def _expect_whole(page: Page, profile: str) -> None:
+    """The chosen profile has room beside the arrow of the browser, 20 px."""
+    expect(page.locator("select[name=mv] option:checked")).to_have_text(profile)
+    room, needed = page.locator("select[name=mv]").evaluate(
+        """select => { const style = getComputedStyle(select), pen = document.createElement("canvas").getContext("2d");
+        pen.font = style.font;
+        return [select.clientWidth - parseFloat(style.paddingLeft) - 20,
+                pen.measureText(select.selectedOptions[0].text).width] }"""
+    )
+    assert needed <= room
