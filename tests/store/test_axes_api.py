@@ -10,7 +10,8 @@ import pytest
 from starlette.testclient import TestClient
 
 from hpn.documents.merge import resolve
-from tests.store.test_machines_api import AXES, read, save
+from tests.build import worked_example
+from tests.store.test_machines_api import ADDRESS, AXES, read, save
 
 
 def test_an_axis_is_read_with_its_selection(client: TestClient) -> None:
@@ -35,6 +36,7 @@ def test_an_axis_is_replaced_patched_and_two_axes_never_meet(client: TestClient)
     late = client.patch(f"{place}/axes/1", json={"quantity": 8}, headers={"If-Match": tags[1]})
 
     assert (one.status_code, two.status_code, late.status_code) == (200, 200, 412)
+    assert late.json()["detail"] == "If-Match names an earlier or other state; read this address again"
     assert one.json()["resolved"]["requirements"]["utilisation"] == 0.9 and one.json()["quantity"] == 7
     assert two.json()["application"] == {} and two.json()["answer"]["status"] == "open"
     assert client.get(place).headers["etag"] == machine  # it stands for the set of axes, not for what they say
@@ -64,8 +66,28 @@ def test_axes_are_added_once_with_a_key(client: TestClient) -> None:
     key["If-Match"] = client.get(place).headers["etag"]  # of the state before, which the retry names, too
     first, again = (client.post(f"{place}/axes", json={"axes": AXES}, headers=key) for _ in range(2))
     assert first.json() == again.json() == {"numbers": [4, 5, 6]}
+    assert "idempotency-replayed" not in first.headers and again.headers["idempotency-replayed"] == "true"
     assert len(read(client, place)["axes"]) == 6
     assert client.post(f"{place}/axes", json={"axes": AXES[:1]}, headers=key).status_code == 422
+
+
+def test_an_axis_comes_back_once_with_a_key(client: TestClient) -> None:
+    """The retry names an axis that is there again, which without the key is refused."""
+    place, key = save(client), {"Idempotency-Key": "restore"}
+    client.delete(f"{place}/axes/3")
+    first, again = (client.post(f"{place}/axes", json={"axes": [{"number": 3}]}, headers=key) for _ in range(2))
+    assert (first.status_code, again.status_code) == (201, 201), again.text
+    assert first.json() == again.json() == {"numbers": [3]}
+    assert again.headers["idempotency-replayed"] == "true"
+
+
+def test_a_selection_becomes_a_machine_once_with_a_key(client: TestClient) -> None:
+    saved = client.post("/api/v1/selections", json={"application": worked_example()}).json()["id"]
+    place, key = f"{ADDRESS}/{saved}/axes", {"Idempotency-Key": "begin"}
+    first, again = (client.post(place, json={"axes": AXES[:1]}, headers=key) for _ in range(2))
+    assert first.json() == again.json() == {"numbers": [2]}
+    assert first.headers["location"] == again.headers["location"]
+    assert "idempotency-replayed" not in first.headers and again.headers["idempotency-replayed"] == "true"
 
 
 def test_many_axes_change_at_once_and_the_effect_is_known_before(client: TestClient) -> None:

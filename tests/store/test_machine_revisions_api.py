@@ -53,6 +53,7 @@ def test_a_retry_of_freezing_with_its_key_gives_the_same_revision(client: TestCl
     place, key = save(client), {"Idempotency-Key": "freeze"}
     first, again = (client.post(f"{place}/revisions", json={"label": "A"}, headers=key) for _ in range(2))
     assert (first.status_code, again.status_code) == (201, 201) and first.json() == again.json()
+    assert "idempotency-replayed" not in first.headers and again.headers["idempotency-replayed"] == "true"
 
 
 def test_a_saved_selection_has_its_first_revision(client: TestClient) -> None:

@@ -118,6 +118,7 @@ def test_a_key_freezes_once_and_a_label_is_taken_once(client: TestClient) -> Non
     key = {"Idempotency-Key": "table-b"}
     first, again = (client.post(place, json=body, headers=key) for _ in range(2))
     assert (first.status_code, again.status_code) == (201, 201) and first.json() == again.json()
+    assert "idempotency-replayed" not in first.headers and again.headers["idempotency-replayed"] == "true"
     assert client.post(place, json=body | {"label": "C"}, headers=key).status_code == 422
     assert client.post(place, json=body | {"label": "b"}).status_code == 409
     assert [line["label"] for line in read(client, f"{MACHINES}/{id}/revisions")["revisions"]] == ["B", "saved"]
@@ -127,7 +128,10 @@ def test_the_tag_of_a_selection_is_that_of_its_latest_revision(client: TestClien
     id = save(client)
     tag = client.get(f"{SELECTIONS}/{id}").headers["etag"]
     place, own = f"{SELECTIONS}/{id}/revisions", {"If-Match": tag}
-    assert client.post(place, json={"application": HEAVIER, "label": "B"}, headers=own).status_code == 201
+    frozen = client.post(place, json={"application": HEAVIER, "label": "B"}, headers=own)
+    assert frozen.status_code == 201
+    assert frozen.headers["etag"] == client.get(frozen.headers["location"]).headers["etag"]
+    assert frozen.headers["etag"] == client.get(f"{SELECTIONS}/{id}").headers["etag"]
     assert client.post(place, json={"application": HEAVIER, "label": "C"}, headers=own).status_code == 412
     assert client.get(f"{SELECTIONS}/{id}", headers={"If-None-Match": tag}).status_code == 200
 

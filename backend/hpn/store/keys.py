@@ -54,11 +54,11 @@ async def made_by(connection: AsyncConnection, key: str, digest: str) -> KeyResu
         return None
     if row.deleted is not None:
         raise KeySpentError(
-            "the selection saved under this idempotency key has been deleted; take a new key to save it anew"
+            "what was saved under this idempotency key has been deleted; take a new key to save it anew"
         )
     if row.digest != digest:
         raise KeyReusedError(
-            "this idempotency key was used before, with other content; take a new key for a new selection"
+            "this idempotency key was used before, with other content; take a new key for a new request"
         )
     return KeyResult(row.document, row.part)
 

@@ -19,7 +19,6 @@ from hpn.engine.selection import select
 from hpn.links.writer import to_link
 from hpn.store import Change, ExcessError, KeyReusedError, KeySpentError, Limits, Machine, Once, SavedAxis
 from hpn.store.records import Answer, DocumentKind
-from hpn.store.writing import order_of
 from hpn.web.columns import columns_of, common_of, resolved
 from hpn.web.door.access import key_needed
 from hpn.web.door.conditions import etag_of, idempotency_key, require_match
@@ -102,8 +101,6 @@ async def apply(
     `make` raises Problem if the change is impossible, 412 if `If-Match` names another state. Raises Problem 403, 404,
     410, 422, and 503 if others overtake every attempt.
     """
-    if once is not None and (before := await made_before(request, once)) is not None:
-        return order_of(before)
     for _ in range(TRIES):
         machine = await editable(request, id, numbers)
         few = len(machine.items) <= FEW_AXES

@@ -1,6 +1,6 @@
 """Axes of machines over REST: add, read, replace, change one or many, remove, restore."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query
@@ -17,6 +17,7 @@ from hpn.documents.axis import MOST_AXES, MOST_BYTES, Axis
 from hpn.documents.merge import resolve
 from hpn.engine.selection import Selection
 from hpn.store import AxisDraft, Change, Machine, MachineDraft, Once, SavedAxis
+from hpn.store.writing import order_of
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
 from hpn.web.api.machines import ADDRESS, require_machine
@@ -24,7 +25,7 @@ from hpn.web.api.replies import JSONBytes, encode
 from hpn.web.columns import columns_of, common_of, draft_of, drafts_of, resolved
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
-from hpn.web.door.conditions import require_match
+from hpn.web.door.conditions import REPLAYED, require_match
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
@@ -37,6 +38,7 @@ from hpn.web.machines import (
     editable,
     guarded,
     machine_of,
+    made_before,
     no_axis,
     once_of,
     require_document,
@@ -103,7 +105,7 @@ REFUSED = (400, 403, 404, 408, 412, 413, 415, 422)
     status_code=201,
     openapi_extra=schemas.request_body(SentAxes) | schemas.ONCE_OF_STATE,
     response_model=replies.NumbersReply,
-    responses=schemas.answers(*(*REFUSED, 410), status=201, headers=schemas.headers("Location", "ETag")),
+    responses=schemas.answers(*(*REFUSED, 410), status=201, headers=schemas.headers("Location", "ETag", REPLAYED)),
 )
 async def add_axes(request: Request, id: schemas.Id) -> Response:
     """Appends axes under new numbers. An axis with the number of a removed one restores the removed axis as it was.
@@ -112,8 +114,11 @@ async def add_axes(request: Request, id: schemas.Id) -> Response:
     """
     body = await read_body(request, maximum_bytes=MOST_BYTES)
     axes = await compute(request, "pages", parsed, SentAxes, body, require_machine)
+    once = once_of(request, body)
     if (selection := await machine_of(request, id, kind=None)).kind == "selection":
-        return await _as_machine(request, selection, axes, once_of(request, body))
+        return await _as_machine(request, selection, axes, once)
+    if once is not None and (before := await made_before(request, once)) is not None:
+        return await _added(request, id, order_of(before), {REPLAYED: "true"})
     back = [axis.number for axis in axes.axes if axis.number is not None]
     if len(set(back)) < len(back):
         raise Problem(422, "axes must name each number once", [(("axes",), "must name each number once")])
@@ -131,9 +136,12 @@ async def add_axes(request: Request, id: schemas.Id) -> Response:
         restored = [(axis.number, columns_of(answer)) for axis, answer in zip(gone, answered[len(new) :], strict=True)]
         return Change(machine.version, author_of(request, machine), new=drafts, restored=restored)
 
-    numbers = await apply(request, id, make, [], once_of(request, body))
+    return await _added(request, id, await apply(request, id, make, [], once), {})
+
+
+async def _added(request: Request, id: str, numbers: Sequence[int], headers: Mapping[str, str]) -> Response:
     tag = tag_of(await editable(request, id, []))
-    return JSONBytes(encode(replies.NumbersReply(tuple(numbers))), 201, {"ETag": tag})
+    return JSONBytes(encode(replies.NumbersReply(tuple(numbers))), 201, {"ETag": tag, **headers})
 
 
 async def _as_machine(request: Request, selection: Machine, axes: SentAxes, once: Once | None) -> Response:
@@ -144,6 +152,8 @@ async def _as_machine(request: Request, selection: Machine, axes: SentAxes, once
     id: str = await guarded(request.app.state.store.add_machine(draft, once))
     note(request, machine=id)
     headers = {"Location": f"{ADDRESS}/{id}", "ETag": tag_of(await machine_of(request, id, []))}
+    if id != draft.id:
+        headers[REPLAYED] = "true"
     numbers = tuple(range(2, 2 + len(axes.axes)))
     return JSONBytes(encode(replies.NumbersReply(numbers)), 201, headers)
 

@@ -28,7 +28,7 @@ from hpn.web.api.replies import JSONBytes, SavedReply, encode
 from hpn.web.columns import common_of, drafts_of
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, content_type_of, parsed, read_body
-from hpn.web.door.conditions import require_done
+from hpn.web.door.conditions import REPLAYED, require_done
 from hpn.web.door.observation import note
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
@@ -46,7 +46,6 @@ from hpn.web.machines import (
 )
 from hpn.web.todays import versions_of
 
-REPLAYED = "Idempotency-Replayed"
 ADDRESS = "/api/v1/machines"
 MOST_ANSWERS, MOST_ANSWER = 90, 300
 """Maximum answers to the questions about a table, and characters of an answer."""

@@ -1,5 +1,6 @@
 """Revisions of documents over REST, and figures of the working copy: gears to order and fewest kinds."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
@@ -17,7 +18,7 @@ from hpn.web.api.machines import ADDRESS
 from hpn.web.api.replies import JSONBytes, RevisionReply, encode
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
-from hpn.web.door.conditions import etag_of
+from hpn.web.door.conditions import REPLAYED, etag_of
 from hpn.web.door.pools import compute
 from hpn.web.edits import kinds_in, order_axis
 from hpn.web.freezing import freeze, revision
@@ -44,14 +45,14 @@ async def save_revision(request: Request, id: schemas.Id) -> Response:
     once = once_of(request, body := await read_body(request))
     block = parsed(RevisionBlock, body)
     if once is not None and (label := await made_before(request, once)) is not None:
-        return await _kept_revision(request, id, label)
+        return await _kept_revision(request, id, label, {REPLAYED: "true"})
     label = await freeze(request, id, block, once)
-    return await _kept_revision(request, id, label)
+    return await _kept_revision(request, id, label, {})
 
 
-async def _kept_revision(request: Request, id: str, label: str) -> Response:
+async def _kept_revision(request: Request, id: str, label: str, replayed: Mapping[str, str]) -> Response:
     line, content = await revision(request, id, label)
-    headers = {"Location": f"{ADDRESS}/{id}/revisions/{line.label}", "ETag": etag_of(content)}
+    headers = {"Location": f"{ADDRESS}/{id}/revisions/{line.label}", "ETag": etag_of(content), **replayed}
     return JSONBytes(encode(replies.revision(line)), 201, headers)
 
 

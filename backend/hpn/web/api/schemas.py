@@ -9,6 +9,7 @@ from pydantic import BaseModel, Field
 from hpn.application import WORKED_EXAMPLE, Application, BatchItem
 from hpn.web.api.replies import MOST_AT_ONCE
 from hpn.web.door.bodies import JSON, NDJSON
+from hpn.web.door.conditions import REPLAYED
 from hpn.web.door.problems import MEDIA_TYPE, TITLES
 from hpn.words.fields import Model
 
@@ -90,7 +91,7 @@ HEADERS = {
     "ETag": "Tag of this state, for If-None-Match and If-Match.",
     "Allow": "Methods of this address.",
     "Location": "Address of the new resource, or the address to use instead.",
-    "Idempotency-Replayed": "true: the reply to an earlier request with the same Idempotency-Key, repeated.",
+    REPLAYED: "true: the reply to an earlier request with the same Idempotency-Key, repeated.",
     "Link": "Address of the next page, rel=next; none at the end.",
     "Preference-Applied": "Applied preference of `Prefer`.",
     "Content-Disposition": "File name for a download.",
@@ -247,5 +248,7 @@ ONCE_OF_STATE: dict[str, Any] = {
 }
 """Headers of a request that is executed once, for one state of a document."""
 
-FREEZES = answers(*(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=headers("Location", "ETag"))
+FREEZES = answers(
+    *(400, 403, 404, 408, 409, 410, 412, 413, 415, 422), status=201, headers=headers("Location", "ETag", REPLAYED)
+)
 """Answers to freezing a revision, of a machine or of a selection."""

@@ -14,11 +14,11 @@ from hpn.store import Draft
 from hpn.web.api import machine_replies as replies
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes, RevisionReply, SavedSelectionReply, encode
-from hpn.web.api.selections import draft_in, matched_version, represented
+from hpn.web.api.selections import draft_in, matched_version, represented, tag_at
 from hpn.web.archive import Labels, Line, changeable, with_catalogue
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import parsed, read_body
-from hpn.web.door.conditions import conditional, etag_of
+from hpn.web.door.conditions import REPLAYED, conditional
 from hpn.web.door.pools import calculate
 from hpn.web.freezing import freeze, revision
 from hpn.web.machines import made_before, once_of
@@ -53,14 +53,16 @@ class SelectionRevision(RevisionBlock):
 async def save_revision(request: Request, id: schemas.Id) -> Response:
     """Calculates an application and freezes it with its whole result as the next revision. A revision never changes."""
     once = once_of(request, body := await read_body(request))
-    label = None if once is None else await made_before(request, once)
+    before = label = None if once is None else await made_before(request, once)
     if label is None:
         await changeable(request, id)
         version = await matched_version(request, id)
         block, draft = await calculate(request, body, _drafted, body, request.app.state.catalogue)
         label = await freeze(request, id, block, once, draft, version)
-    line, content = await revision(request, id, label)
-    headers = {"Location": f"/api/v1/selections/{id}/revisions/{line.label}", "ETag": etag_of(content)}
+    (line, _), tag = await revision(request, id, label), await tag_at(request, id, label)
+    headers = {"Location": f"/api/v1/selections/{id}/revisions/{line.label}", "ETag": tag}
+    if before is not None:
+        headers[REPLAYED] = "true"
     return JSONBytes(encode(replies.revision(line)), 201, headers)
 
 

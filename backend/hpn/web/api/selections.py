@@ -44,6 +44,7 @@ from hpn.web.archive import (
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import JSON, MERGE_PATCH, parsed, read_body
 from hpn.web.door.conditions import (
+    REPLAYED,
     conditional,
     etag_of,
     idempotency_key,
@@ -55,7 +56,6 @@ from hpn.web.door.observation import note
 from hpn.web.door.pools import calculate
 from hpn.web.todays import versions_of
 
-REPLAYED = "Idempotency-Replayed"
 KEY = (
     "Makes a retry safe: the same key with the same content is saved once; with other content it is a 422. A key "
     "belongs to its caller (API key, else address) and does not expire: after its selection is deleted, a late retry "
@@ -230,6 +230,12 @@ async def matched_version(request: Request, id: str) -> int | None:
     saved, then = await with_catalogue(request.app.state, id)
     require_match(request, _tag_of(saved, then, request.app.state.catalogue))
     return saved.version
+
+
+async def tag_at(request: Request, id: str, label: str) -> str:
+    """Entity tag of a saved selection in the revision of a label."""
+    state = request.app.state
+    return _tag_of(*await with_catalogue(state, id, label), state.catalogue)
 
 
 def _tag_of(saved: SavedSelection, then: Catalogue | None, today: Catalogue) -> str:

@@ -11,6 +11,9 @@ from hpn.web.door.problems import Problem
 IDEMPOTENCY_KEY = re.compile(r'"?([\x21\x23-\x7e]{1,200})"?')
 """Key of visible ASCII, with or without the quotes of a structured field."""
 
+REPLAYED = "Idempotency-Replayed"
+"""Header that marks the repeated reply to an earlier request with the same key."""
+
 REPRESENTATION = re.compile(r"(?:^|[,;\s])return\s*=\s*\"?representation\b", re.I)
 
 
@@ -42,7 +45,7 @@ def require_match(request: Request, etag: str) -> None:
 
 def other_state() -> Problem:
     """Problem 412 for an `If-Match` that names another state than the current one."""
-    return Problem(412, "If-Match names another state of this selection; read it again")
+    return Problem(412, "If-Match names an earlier or other state; read this address again")
 
 
 def require_done(is_done: bool, version: int | None, missing: Problem, overtaken: Problem | None = None) -> None:
