@@ -132,6 +132,8 @@ def test_the_list_of_the_server_is_read_only(api: TestClient) -> None:
         ({"motors": [M40 | {"rated_speed_rpm": 6001}]}, "/motors/0/rated_speed_rpm"),
         ({"motors": [M40 | {"stall_torque_Nm": 28}]}, "/motors/0/stall_torque_Nm"),
         ({"motors": [M40 | {"inertia": 1}]}, "/motors/0/inertia"),
+        ({"motors": [M40, {"designation": "M 9"}]}, "/motors/1"),
+        ({"motors": [{"designation": "M 9", "peak_torque_Nm": None}]}, "/motors/0"),
         ({"motors": [{"designation": f"M {k}"} for k in range(5001)]}, "/motors"),
     ],
 )

@@ -44,6 +44,8 @@ class MotorEntry(Model):
         ]
         if errors:
             raise refused(self, *errors)
+        if all(getattr(self, name) is None for name in type(self).model_fields if name != "designation"):
+            raise PydanticCustomError("no_figure", "has no figure at all: leave it out, or add one")
         return self
 
 
