@@ -14,7 +14,7 @@ from starlette.testclient import TestClient
 from hpn import cli
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
-from tests.build import Json, cycle, phase
+from tests.build import Json, cycle, phase, worked_example
 from tests.store.test_machines_api import ADDRESS, MACHINE
 
 Hpn = Callable[..., tuple[int, str, str]]
@@ -113,6 +113,23 @@ def test_what_is_no_machine_is_refused(tmp_path: Path, hpn: Hpn, name: str, cont
     (tmp_path / name).write_text(content)
     code, printed, error = hpn("other", "import", str(tmp_path / name))
     assert (code, printed) == (2, "") and said in error and "Traceback" not in error
+
+
+def test_each_line_about_a_file_names_it(tmp_path: Path, hpn: Hpn) -> None:
+    for content in (json.dumps(worked_example()), '{"title": "a", "title": "b"}'):
+        (wrong := tmp_path / "wrong.json").write_text(content)
+        code, _, error = hpn("other", "import", str(wrong))
+        assert code == 2 and error
+        assert all(line.startswith(f"{wrong}: ") for line in error.splitlines()), error
+
+
+def test_a_file_that_cannot_be_written_is_named_with_the_reason(tmp_path: Path, hpn: Hpn, file: Path) -> None:
+    id, folder = json.loads(file.read_text())["id"], tmp_path / "nowhere"
+    (tmp_path / "folder.json").mkdir()
+    code, _, error = hpn("one", "export", id, str(folder / "x.json"))
+    assert (code, error.strip()) == (2, f"{folder}/x.json: there is no folder {folder}")
+    code, _, error = hpn("one", "export", id, str(tmp_path / "folder.json"))
+    assert (code, error.strip()) == (2, f"{tmp_path}/folder.json: is a folder, where a file belongs")
 
 
 def test_a_wrong_label_is_refused(tmp_path: Path, hpn: Hpn, file: Path) -> None:

@@ -9,15 +9,20 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from pydantic import ValidationError
 
 from hpn import ENGINE_VERSION
+from hpn.application import InputError
+from hpn.application.faults import lines_of
 from hpn.application.unique import RepeatedNameError, require_unique
 from hpn.catalogue import Catalogue
+from hpn.cli.refusals import MOST_LINES
 from hpn.documents import revision
 from hpn.documents.axis import MOST_BYTES, MOST_REVISIONS
 from hpn.documents.document import Document
 from hpn.documents.revision import SAVED, Frozen, is_label
 from hpn.fleet.beside import read_answered
+from hpn.fleet.order import require_writable
 from hpn.installed import require
 from hpn.store import Machine, MachineDraft, RevisionDraft, Store
 from hpn.web.api import machine_replies as replies
@@ -29,7 +34,7 @@ from hpn.web.door.bodies import parsed
 from hpn.web.door.problems import Problem
 from hpn.web.settings import Settings
 from hpn.words.reply import Reply
-from hpn.words.wording import MendableError
+from hpn.words.wording import MendableError, shortened
 
 TABLES = (".csv", ".parquet", ".xlsx", ".arrow", ".arrows", ".feather", ".csv.gz")
 
@@ -64,6 +69,8 @@ def run(options: argparse.Namespace) -> int:
 async def _export(options: argparse.Namespace) -> int:
     id, file = options.id.rstrip("/").rpartition("/")[2], options.file
     write = None if file == "-" or file.endswith(".json") else _table_writer(file)
+    if file != "-":
+        require_writable(Path(file))
     store = Store(**Settings().database())
     try:
         await _open(store)
@@ -122,7 +129,11 @@ async def _import(options: argparse.Namespace) -> int:
 
 def _draft(options: argparse.Namespace, content: bytes, catalogue: Catalogue) -> MachineDraft:
     if options.file.endswith(".json"):
-        return _whole(options.file, content, catalogue)
+        try:
+            return _whole(options.file, content, catalogue)
+        except (ValidationError, InputError) as error:
+            lines = shortened(lines_of(error), MOST_LINES)
+            raise MachineError("\n".join(f"{options.file}: {line}" for line in lines)) from None
     if not options.file.endswith(TABLES):
         raise MachineError(f"{options.file}: the suffix must be .json, or one of a table: {', '.join(TABLES)}")
     require("fleet")
