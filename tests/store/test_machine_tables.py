@@ -104,6 +104,16 @@ def test_a_question_with_options_names_them(client: TestClient) -> None:
     assert found["axes"][0]["application"]["duty_cycle"]["phases"][0]["torque_Nm"] == 1.234
 
 
+@pytest.mark.parametrize(
+    "pair", [("Moment:Nm", "Moment:kNm"), ("3:Nm", "Moment:kNm"), ("3:T", "3:skip"), ("decimal:,", "decimal:.")]
+)
+def test_of_two_answers_to_one_question_none_is_chosen(client: TestClient, pair: tuple[str, str]) -> None:
+    refused = post(client, CELLS.encode(), CSV, f"?answer={pair[0]}&answer={pair[1]}")
+    assert refused.status_code == 422, refused.text
+    assert f"{pair[1]}: an earlier answer about " in refused.json()["detail"]
+    assert {error["code"] for error in refused.json()["errors"]} == {"answer"}
+
+
 @pytest.mark.parametrize("answer", ["nothing", "Unknown:T", "Moment:colour", ":T", "99:T", "Moment:", "%00:%00"])
 def test_an_answer_that_answers_nothing_is_refused(client: TestClient, answer: str) -> None:
     refused = post(client, CELLS.encode(), CSV, f"?answer={answer}")

@@ -15,6 +15,7 @@ NAMES = tuple(part.name for part in fields(Choices) if part.type is str and part
 NO_ANSWER = N_("{answer}: must be a column and what it is, or a question and its answer, with a colon between them")
 NO_COLUMN = N_("{answer}: the table has no column {name}, neither by heading nor by number")
 TWO_COLUMNS = N_("{answer}: the table has several columns {name}; name this one by its number")
+TWO_ANSWERS = N_("{answer}: an earlier answer about {name} is another")
 NO_MEANING = N_("{answer}: {meaning} is neither an input, such as T or torque_Nm, nor a unit, such as Nm, nor skip")
 MOST_SHOWN = 60
 
@@ -31,9 +32,14 @@ class Answers:
 def answers_of(texts: Sequence[str]) -> Answers:
     """Answers from texts with a colon between column and meaning, or between question and answer."""
     pairs = [(name.strip(), meaning.strip()) for name, _, meaning in (text.rpartition(":") for text in texts)]
-    faults = tuple(_refusal(NO_ANSWER, text) for text, (name, _) in zip(texts, pairs, strict=True) if not name)
-    whole: dict[str, Any] = {name: meaning for name, meaning in pairs if name in NAMES}
-    return Answers(Choices(of=ANY, **whole), [pair for pair in pairs if pair[0] and pair[0] not in NAMES], faults)
+    whole, faults = dict[str, Any](), list[Sentence]()
+    for text, (name, meaning) in zip(texts, pairs, strict=True):
+        if not name:
+            faults.append(_refusal(NO_ANSWER, text))
+        elif name in NAMES and whole.setdefault(name, meaning) != meaning:
+            faults.append(_refusal(TWO_ANSWERS, text, name=name))
+    columns = [pair for pair in pairs if pair[0] and pair[0] not in NAMES]
+    return Answers(Choices(of=ANY, **whole), columns, tuple(faults))
 
 
 T = TypeVar("T")
@@ -63,12 +69,12 @@ def about(columns: Sequence[Column], answers: Answers, inputs: Inputs) -> Answer
         codes = (meaning,) if meaning in units.QUANTITY_OF else spellings.codes_for(meaning)
         if len(places) != 1:
             faults.append(_refusal(TWO_COLUMNS if places else NO_COLUMN, text, name=name))
-        elif meaning in meanings:
-            roles[places[0]] = meanings[meaning]
-        elif len(codes) == 1:
-            of_units[places[0]] = codes[0]
-        else:
+        elif meaning not in meanings and len(codes) != 1:
             faults.append(_refusal(NO_MEANING, text, meaning=meaning))
+        else:
+            kept, value = (roles, meanings[meaning]) if meaning in meanings else (of_units, codes[0])
+            if kept.setdefault(places[0], value) != value:
+                faults.append(_refusal(TWO_ANSWERS, text, name=name))
     return Answers(replace(answers.whole, roles=roles, units=of_units), (), tuple(faults))
 
 
