@@ -176,3 +176,11 @@ def test_a_wrong_choice_of_axes_is_named_where_it_stands(
 
     assert answer.status_code == 422
     assert [(error["pointer"], error["detail"]) for error in answer.json()["errors"]] == [(pointer, detail)]
+
+
+def test_a_wrong_value_for_many_axes_is_named_where_it_stands(client: TestClient) -> None:
+    place = save(client)
+    answer = client.patch(f"{place}/axes?dry=1", json={"numbers": "all", "patch": {"quantity": 0}})
+    assert answer.status_code == 422
+    assert [error["pointer"] for error in answer.json()["errors"]] == ["/patch/quantity"]
+    assert answer.json()["detail"].startswith("/patch/quantity: ")

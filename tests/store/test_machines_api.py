@@ -205,6 +205,7 @@ def test_common_values_are_patched_and_every_axis_answered_anew(client: TestClie
     refused = client.patch(place, json={"common": {"requirements": {"utilisation": 7}}})
     assert refused.status_code == 422
     assert refused.json()["errors"][0]["pointer"] == "/common/requirements/utilisation"
+    assert refused.json()["detail"].startswith("/common/requirements/utilisation: ")
 
 
 def test_a_change_of_common_values_is_never_refused_for_an_axis(client: TestClient) -> None:

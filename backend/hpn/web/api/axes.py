@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query
-from pydantic import Field, RootModel, TypeAdapter, WrapValidator
+from pydantic import Field, RootModel, TypeAdapter, ValidationError, WrapValidator
 from pydantic_core import PydanticCustomError
 from starlette.requests import Request
 from starlette.responses import Response
@@ -313,7 +313,7 @@ async def change_axes(
     def make(machine: Machine) -> Change:
         require_document(request, machine)
         axes = axes_by_number(machine, changes.numbers)
-        drafts = drafted([(axis, after(axis, changes.patch)) for axis in axes], common_of(machine), catalogue)
+        drafts = drafted([(axis, _after(axis, changes.patch)) for axis in axes], common_of(machine), catalogue)
         changed = [(axis.number, axis.version, draft) for axis, draft in zip(axes, drafts, strict=True)]
         effects.append(effect_of(machine, {number: draft for number, _, draft in changed}, catalogue))
         return Change(machine.version, author_of(request, machine), changed=changed)
@@ -324,6 +324,14 @@ async def change_axes(
         await apply(request, id, make)
     tag = tag_of(await editable(request, id, []))
     return JSONBytes(encode(replies.EffectReply(*effects[-1])), headers={"ETag": tag})
+
+
+def _after(axis: SavedAxis, patch: Mapping[str, Any]) -> dict[str, Any]:
+    """Own values of an axis after a patch of several; Problem 422 with the place in the request."""
+    try:
+        return after(axis, patch)
+    except ValidationError as error:
+        raise Problem.below(error, "patch") from None
 
 
 def _require_fields(patch: Mapping[str, Any], *place: str) -> None:

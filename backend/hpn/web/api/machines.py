@@ -261,15 +261,9 @@ def _change(machine: Machine, patch: MachinePatch, catalogue: Catalogue, by: str
     try:
         common = Common.model_validate(patched(common_of(machine), patch.common) or {}).as_json
     except (ValidationError, InputError) as error:
-        raise _below_common(error) from None
+        raise Problem.below(error, "common") from None
     values["common"] = msgspec.json.encode(common).decode()
     return replace(change, answered=answers_under(machine, common, catalogue))
-
-
-def _below_common(error: ValidationError | InputError) -> Problem:
-    problem = Problem.of(error)
-    problem.errors = [fault._replace(location=("common", *fault.location)) for fault in problem.errors]
-    return problem
 
 
 def _order(machine: Machine, order: tuple[int, ...]) -> list[int]:

@@ -81,6 +81,13 @@ class Problem(HTTPException):
         detail = "; ".join(": ".join(filter(None, (pointer(at), text))) for at, text, _ in errors[:3])
         return cls(422, detail, errors)
 
+    @classmethod
+    def below(cls, error: ValidationError | InputError, *place: str) -> "Problem":
+        """Problem for input at a place of the body."""
+        whole = cls.of(error)
+        faults = [fault._replace(location=(*place, *fault.location)) for fault in whole.errors]
+        return cls(422, whole.detail, faults) if isinstance(error, InputError) else cls.at(faults)
+
     def body(self) -> dict[str, Any]:
         """Problem as a JSON object."""
         body: dict[str, Any] = {
