@@ -349,3 +349,20 @@ def test_a_file_that_unpacks_to_more_than_its_bounds_is_refused(catalogue: Catal
 def test_a_missing_file_is_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", str(tmp_path / "none.pdf")]) == 2
     assert "there is no such file" in capsys.readouterr().err
+
+
+def test_a_package_nested_deeply_is_refused(catalogue: Catalogue) -> None:
+    deep = b"<a>" * 100_000 + b"</a>" * 100_000
+    made = package(typed_export_of(CASES["example"], catalogue))
+    with pytest.raises(UnreadableFileError, match="of the package is nested too deeply"):
+        verify(rezipped(made, lambda name, part: deep if name == "aasx/data.xml" else part), catalogue)
+
+
+def test_a_workbook_with_an_infinite_number_is_refused_in_one_line(catalogue: Catalogue) -> None:
+    def alter(name: str, part: bytes) -> bytes:
+        return part.replace(b"<v>149</v>", b"<v>1e999</v>") if name.startswith("xl/worksheets/") else part
+
+    made = rezipped(workbook(typed_export_of(CASES["example"], catalogue), ENGLISH), alter)
+    with pytest.raises(UnreadableFileError) as caught:
+        verify(made, catalogue)
+    assert str(caught.value).count("\n") == 0

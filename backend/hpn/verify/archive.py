@@ -20,4 +20,4 @@ def unpacked(content: bytes, *, form: str, below: str = "") -> Mapping[str, byte
                 raise UnreadableFileError(f"the {form} holds more than {MOST_BYTES} bytes")
             return {name: archive.read(name) for name in archive.namelist() if name.startswith(below)}
     except (BadZipFile, zlib.error, OSError, ValueError, NotImplementedError, RuntimeError, EOFError) as error:
-        raise UnreadableFileError(f"the {form} can’t be read: {error}") from None
+        raise UnreadableFileError.of(form, error) from None

@@ -37,7 +37,10 @@ def lines_of(content: bytes) -> list[FileLine]:
         root = ElementTree.fromstring(parts.get(DATA, b""))
     except ElementTree.ParseError as error:
         raise UnreadableFileError(f"{DATA} of the package can’t be read: {error}") from None
-    return [*_texts(root, ""), *_rows(parts)]
+    try:
+        return [*_texts(root, ""), *_rows(parts)]
+    except RecursionError:
+        raise UnreadableFileError(f"{DATA} of the package is nested too deeply") from None
 
 
 def report_of(content: bytes) -> bytes:

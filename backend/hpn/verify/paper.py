@@ -219,10 +219,10 @@ def _linked(form: Format, content: bytes) -> tuple[str, FileSubject]:
             return link, question
     if links and (refused := _refused(links[0])):
         raise UnreadableFileError(f"the {form.name} {refused} from the service")
-    leads = f"leads to {links[0]}, which" if links else "has no link that"
+    lack = f"leads to {links[0]}, which has none either" if links else "has no link"
     raise UnreadableFileError(
-        f"the {form.name} is of an earlier version, carries no application, and {leads} has none either: save the JSON "
-        "of that selection from the service, and name it with --application"
+        f"the {form.name} is of an earlier version, carries no application, and {lack}: save the JSON of that "
+        "selection from the service, and name it with --application"
     )
 
 

@@ -34,7 +34,7 @@ def _read(content: bytes, work: Callable[[PdfReader], T]) -> T:
     try:
         return work(PdfReader(BytesIO(content)))
     except Exception as error:  # damaged files raise errors of every kind
-        raise UnreadableFileError(f"the PDF can’t be read: {error}") from None
+        raise UnreadableFileError.of("PDF", error) from None
 
 
 def parts_of(content: bytes) -> Mapping[str, bytes]:

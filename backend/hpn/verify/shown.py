@@ -35,6 +35,11 @@ BY_MARK = {".": (",", GROUP), ",": (".", GROUP)}
 class UnreadableFileError(MendableError):
     """Error of an unreadable file; its sentence says why."""
 
+    @classmethod
+    def of(cls, form: str, error: Exception) -> "UnreadableFileError":
+        """Error for a file that a library can't read, with the first line of the library's text."""
+        return cls(f"the {form} can’t be read: {str(error).partition(chr(10))[0]:.200}")
+
 
 MOST_FAULTS, MOST_FIELDS = 3, 200_000
 

@@ -22,7 +22,7 @@ def _sheets(content: bytes, *, values: bool) -> list[Worksheet]:
         book = openpyxl.load_workbook(BytesIO(content), data_only=values)
         sheets: list[Worksheet] = list(book.worksheets)
     except Exception as error:  # damaged files raise errors of every kind
-        raise UnreadableFileError(f"the workbook can’t be read: {error}") from None
+        raise UnreadableFileError.of("workbook", error) from None
     if sum(sheet.max_row * sheet.max_column for sheet in sheets) > MOST_CELLS:
         raise UnreadableFileError(f"the workbook has more than {MOST_CELLS} cells")
     return sheets
