@@ -287,3 +287,12 @@ async def test_readiness_is_gone_where_saving_or_its_promises_are(
         await store.check(catalogue)
     assert await count(store) == 1
     await store.close()
+
+
+async def test_a_file_that_cannot_be_opened_starts_no_thread(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The thread of a failed connection tells the event loop, and printed a traceback where a command had ended."""
+    started = list[object]()
+    monkeypatch.setattr("aiosqlite.core.Thread", lambda **options: started.append(options))
+    with pytest.raises(StoreUnavailableError):
+        await Store(f"sqlite:///{tmp_path}").require_complete()
+    assert started == []

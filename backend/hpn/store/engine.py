@@ -2,6 +2,7 @@
 
 import os
 import sqlite3
+from collections.abc import Sequence
 from contextlib import closing, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -63,6 +64,7 @@ def _sqlite(url: URL, seconds: float) -> AsyncEngine:
         pool_timeout=seconds,
         connect_args={"timeout": seconds},
     )
+    event.listen(engine.sync_engine, "do_connect", _try)
     event.listen(engine.sync_engine, "connect", _prepare)
     event.listen(engine.sync_engine, "begin", _begin)
     return engine
@@ -84,6 +86,12 @@ def _create(file: Path) -> None:
             connection.execute("PRAGMA user_version=0")  # writes the first page, which keeps the mode
         with suppress(FileExistsError):  # another process was first
             os.link(new, file)
+
+
+def _try(dialect: object, record: object, arguments: Sequence[Any], options: object) -> None:
+    """Raise the error of a file that can't be opened: the thread of a connection that fails would report its end to the
+    event loop, which may be closed by then."""
+    sqlite3.connect(arguments[0]).close()
 
 
 def _prepare(connection: Any, record: object) -> None:
