@@ -125,6 +125,7 @@ def test_no_rows_are_no_answers() -> None:
         (LONG | {"torque_Nm": ["a", "b", "c"]}, "frame: column torque_Nm is string, where numbers belong"),
         (LONG | {"pause_s": [1]}, "can’t be read as a table"),
         (LONG | {"pause_s": [1, "x", {}]}, "can’t be read as a table"),
+        (pd.DataFrame(LONG | {"torque_Nm": [[1.0], 2.0, 3.0]}), "as a table: cannot mix list and non-list"),
         (pl.DataFrame(LONG).lazy(), "LazyFrame can’t be read as a table"),
         *((other, "can’t be read as a table") for other in (7, None, "axes.csv", [LONG])),
     ],

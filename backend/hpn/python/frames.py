@@ -77,7 +77,8 @@ def size(
     try:
         table = pa.table(frame)
     except (pa.ArrowException, TypeError, ValueError) as error:
-        raise ApplicationError(f"a {type(frame).__name__} can’t be read as a table: {error}") from None
+        reason = "; ".join(map(str, error.args))
+        raise ApplicationError(f"a {type(frame).__name__} can’t be read as a table: {reason}") from None
     engine = threads(workers or len(os.sched_getaffinity(0)))
     with with_application_errors():
         return _like(frame, size_table(axes_in_memory(table, ignore), known.catalogue, give, engine))
