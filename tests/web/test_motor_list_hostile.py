@@ -15,6 +15,7 @@ from starlette.testclient import TestClient
 from hpn.web.app import create_app
 from hpn.web.settings import Settings
 from tests.fuzz.mutation import mutated
+from tests.web.sheets import cells, typed
 from tests.web.test_motor_list_pages import SHEET, hidden, kept, sent
 
 CURVED = """Motor;J [kg·cm²];n_max [rpm];curve speed [rpm];M S1 [Nm];curve peak torque [Nm]
@@ -344,8 +345,8 @@ def require_usable(hostile: TestClient, place: str, name: str, seed: int) -> Non
     assert json.loads(json.dumps(motors, allow_nan=False)) == motors
     id = place.rpartition("/")[2]
     assert hostile.get(f"/pairs?{LINK}&list={id}").status_code in READ, seed
-    text = unescape(page.text.split("<textarea")[1].split(">", 1)[1].split("</textarea>")[0]).strip()
-    again = sent(hostile, {**hidden(page.text), "name": name, "keep": "1", "text": text}, f"{place}/save")
-    assert again.status_code == 303, (seed, text)
-    assert hostile.get(f"/api/v1{place}").json()["motors"] == motors, (seed, text)
+    fields = cells(page.text)
+    again = typed(hostile, fields, f"{place}/save")
+    assert again.status_code == 303, (seed, fields)
+    assert hostile.get(f"/api/v1{place}").json()["motors"] == motors, (seed, fields)
     assert hostile.delete(f"/api/v1{place}").status_code == 204

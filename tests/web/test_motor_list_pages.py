@@ -15,6 +15,7 @@ from hpn.tables.table import Table
 from hpn.web.app import create_app
 from hpn.web.motor_tables import as_text, motors_in
 from hpn.web.settings import Settings
+from tests.web.sheets import cells, typed
 
 SHEET = """Motor;M_N [Nm];M_max [Nm];n_N [rpm];n_max [rpm];J_m [kg·cm²];m [kg]
 S40-0.6;0.64;1.9;3000;6000;0.17;0.9
@@ -371,15 +372,40 @@ def test_open_questions_are_asked_before_a_list_is_kept(keeping: TestClient) -> 
     assert sent(keeping, answered).status_code == 303
 
 
-def test_a_list_is_edited_as_a_table_and_a_later_change_is_not_overwritten(keeping: TestClient) -> None:
-    place = kept(keeping, "Edited")
+def long_sheet(count: int) -> str:
+    return "Motor;M_N [Nm];J_m [kg·cm²]\n" + "".join(f"M {k};1.5;0.4\n" for k in range(1, count + 1))
+
+
+def test_a_list_longer_than_a_sheet_is_edited_as_text_and_none_of_its_motors_is_lost_unsaid(
+    keeping: TestClient,
+) -> None:
+    place = kept(keeping, "Long", long_sheet(301))
     page = keeping.get(place).text
     text = unescape(page.split("<textarea")[1].split(">", 1)[1].split("</textarea>")[0]).strip()
-    fields = {**hidden(page), "name": "Edited", "keep": "1", "text": text.replace("1.27", "1.37")}
+    fields = {**hidden(page), "name": "Long", "keep": "1", "text": text.replace("M 7\t1.5", "M 7\t1.7")}
+
+    asked = sent(keeping, {**fields, "text": text.replace("M 7\t1.5", "M 7\tmany")}, f"{place}/save")
+    assert asked.status_code == 200
+    assert "Motors with a cell that is no number above 0 are left out (1): row 8." in asked.text
+    assert len(keeping.get(f"/api/v1{place}").json()["motors"]) == 301
 
     assert sent(keeping, fields, f"{place}/save").status_code == 303
-    assert keeping.get(f"/api/v1{place}").json()["motors"][1]["rated_torque_Nm"] == 1.37
+    assert keeping.get(f"/api/v1{place}").json()["motors"][6]["rated_torque_Nm"] == 1.7
     assert sent(keeping, fields, f"{place}/save").status_code == 412
+    agreed = {**hidden(asked.text), "version": "2", "name": "Long", "keep": "1"}
+    assert sent(keeping, agreed, f"{place}/save").status_code == 303
+    assert len(keeping.get(f"/api/v1{place}").json()["motors"]) == 300
+
+
+def test_a_list_is_deleted_for_good_and_what_is_typed_of_it_can_be_stored_anew(keeping: TestClient) -> None:
+    place = kept(keeping, "Gone")
+    fields = cells(keeping.get(place).text)
+    assert keeping.post(f"{place}/delete", data={"version": "1"}, follow_redirects=False).status_code == 303
+
+    page = typed(keeping, fields, f"{place}/save")
+    assert page.status_code == 404
+    anew = typed(keeping, cells(page.text), "/motor-lists")
+    assert anew.status_code == 303 and anew.headers["location"] != place
 
 
 def test_a_list_is_deleted_for_good(keeping: TestClient) -> None:

@@ -37,13 +37,15 @@ class TableBounds:
     """Limits for the table of a file: inputs that its columns may hold, its most rows, its longest text, and the test
     for tables that are taken unread.
 
-    Without that test an object of JSON is an application.
+    Without that test an object of JSON is an application. `numbers` are those of a text's lines for the user, from 1 on
+    by default.
     """
 
     inputs: Inputs
     most_rows: int
     most_characters: int
     takes: Takes | None = None
+    numbers: tuple[int, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +107,8 @@ def _of_text(text: str, bounds: TableBounds) -> Contents:
                 return Contents({"": (phases,)}, text)
             if bounds.takes and _is_taken_csv(text, bounds.takes):
                 return Contents(suffix=".csv")
-            return Contents({"": tuple(grids_of(text, bounds.most_rows, bounds.most_characters))}, text)
+            grids = grids_of(text, bounds.most_rows, bounds.most_characters, bounds.numbers)
+            return Contents({"": tuple(grids)}, text)
         if bounds.takes is None:
             return Contents(text=text, is_application=True)
         raise RefusedError(LINES)

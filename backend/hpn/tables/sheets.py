@@ -138,7 +138,12 @@ def grid_of(rows: Iterable[Sequence[str]], separator: str = "", numbers: Iterabl
     return Grid(cells, tuple(k for k, _, _ in full), separator, counts=tuple(width for _, _, width in full))
 
 
-def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = MAXIMUM_CHARACTERS) -> list[Grid]:
+def grids_of(
+    text: str,
+    most_rows: int = MAXIMUM_PHASES,
+    most_characters: int = MAXIMUM_CHARACTERS,
+    numbers: Sequence[int] | None = None,
+) -> list[Grid]:
     """The text's cells by each possible separator; raises RefusedError for an empty or too long text."""
     if len(text) > most_characters:
         raise RefusedError(N_("the text is too long: at most {most} characters"), most=most_characters)
@@ -149,7 +154,10 @@ def grids_of(text: str, most_rows: int = MAXIMUM_PHASES, most_characters: int = 
         raise RefusedError(N_("there are more than {most} rows"), most=most_rows)
     hint = _HINT.match(text[: _HINT.longest])
     text = text[hint.end() :] if hint else text
-    return [grid_of(([tidy(cell) for cell in row] for row in _rows(text, name)), name) for name in _separators(text)]
+    return [
+        grid_of(([tidy(cell) for cell in row] for row in _rows(text, name)), name, numbers)
+        for name in _separators(text)
+    ]
 
 
 def _separators(text: str) -> list[str]:

@@ -1,6 +1,8 @@
-"""Tables of motors for a list: limits of their size, and motors made of their rows."""
+"""Tables of motors for a list: limits of their size, motors made of their rows, and lists written as tables."""
 
+import csv
 from collections.abc import Sequence
+from io import StringIO
 
 from pydantic import ValidationError
 
@@ -10,6 +12,7 @@ from hpn.tables.answers import reading_by_answers
 from hpn.tables.files import TableBounds
 from hpn.tables.motor_inputs import MOTORS
 from hpn.tables.motor_points import POINT
+from hpn.tables.motors import NO_FIGURE, NO_FIGURES, NO_NAME
 from hpn.tables.reading import Reading, reading_of
 from hpn.tables.table import Table
 from hpn.web.motor_lists import MOST_LISTED
@@ -52,6 +55,11 @@ def motors_in(table: Table) -> tuple[list[MotorEntry], list[Sentence]]:
     return motors, notes
 
 
+def left_out(table: Table, notes: Sequence[Sentence]) -> list[Sentence]:
+    """Sentences on motors that nobody asked to leave out: `notes` of `motors_in`, and notes on unreadable rows."""
+    return [*notes, *(note for note in table.notes if note.template in (NO_FIGURE, NO_FIGURES, NO_NAME))]
+
+
 COLUMNS = (
     "designation",
     "rated_torque_Nm",
@@ -68,15 +76,21 @@ COLUMNS = (
 def as_text(motors: Sequence[MotorEntry]) -> str:
     """List as a table for editing: unknown figures are blank, and each point of a torque curve has a row."""
     points = tuple(POINT) if any(motor.curve for motor in motors) else ()
-    lines = ["\t".join((*COLUMNS, *points))]
+    lines: list[Sequence[str]] = [(*COLUMNS, *points)]
     for motor in motors:
         figures: Sequence[object] = [getattr(motor, name, None) for name in COLUMNS]
         for point in motor.curve or (None,):
             own = [getattr(point, field) if point else None for field in POINT.values()] if points else []
-            texts = ("" if value is None else _as_cell(value) for value in (*figures, *own))
-            lines.append("\t".join(texts))
+            lines.append(["" if value is None else _as_cell(value) for value in (*figures, *own)])
             figures = [motor.designation, *[None] * (len(COLUMNS) - 1)]
-    return "\n".join(lines)
+    return written(lines)
+
+
+def written(lines: Sequence[Sequence[str]]) -> str:
+    """Lines of cells as a text with tabs, in which a mark of quotation is part of its cell."""
+    text = StringIO()
+    csv.writer(text, delimiter="\t", lineterminator="\n").writerows(lines)
+    return text.getvalue().removesuffix("\n")
 
 
 def _as_cell(value: object) -> str:

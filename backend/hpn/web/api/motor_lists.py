@@ -14,7 +14,6 @@ from starlette.responses import Response
 from hpn.application.faults import Fault
 from hpn.engine.motors import entries_of
 from hpn.store import MotorListDraft, MotorListLine
-from hpn.tables.motors import NO_FIGURE, NO_FIGURES, NO_NAME
 from hpn.tables.reading import Reading
 from hpn.tables.table import Table
 from hpn.web import motor_lists
@@ -30,7 +29,7 @@ from hpn.web.door.conditions import conditional
 from hpn.web.door.pools import compute, compute_beside
 from hpn.web.door.problems import Problem
 from hpn.web.motor_lists import SERVER, MotorList, draft_of, tag_of
-from hpn.web.motor_tables import motors_in, read_answered
+from hpn.web.motor_tables import left_out, motors_in, read_answered
 from hpn.words.reply import Reply
 from hpn.words.wording import N_, Sentence
 
@@ -210,9 +209,8 @@ def _draft_of_table(reading: Reading, faults: Sequence[Sentence], name: str | No
         raise Problem(422, faults, [Fault(ANSWER, fault.text, "answer") for fault in faults])
     table = reading.table or Table(problem=Sentence(NO_TABLE))
     require_whole(table)
-    motors, refused = motors_in(table)
-    refused += [note for note in table.notes if note.template in (NO_FIGURE, NO_FIGURES, NO_NAME)]
-    if refused:
+    motors, notes = motors_in(table)
+    if refused := left_out(table, notes):
         raise Problem(422, refused)
     try:
         return draft_of(MotorList.model_validate({"name": name, "motors": motors}))

@@ -1,9 +1,9 @@
-"""Lists of motors: a table is pasted or opened, its columns are corrected, and the list is stored, edited or deleted.
+"""Lists of motors: a table is pasted, opened or typed into a sheet, corrected, stored, edited and deleted.
 
-An edited list takes the same way as a new one: the page writes it as a table, which is read again.
+An edited list takes the same way as a new one: its sheet, or its text if it is long, is a table that is read again.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 from urllib.parse import urlencode
@@ -17,23 +17,27 @@ from hpn.application import MotorEntry
 from hpn.application.faults import sentences_of
 from hpn.engine.motors import entries_of
 from hpn.store import SavedMotorList, StoreUnavailableError
+from hpn.tables.columns import ANY
 from hpn.tables.motor_inputs import MOTORS
 from hpn.tables.reading import Reading
-from hpn.web import motor_lists
+from hpn.web import motor_cells, motor_lists
 from hpn.web.door.access import admit
 from hpn.web.door.bodies import pairs_of, read_form
 from hpn.web.door.hosts import require_same_origin
 from hpn.web.door.pools import compute
 from hpn.web.door.problems import Problem
-from hpn.web.door.uploads import decoded, read_parts
+from hpn.web.door.uploads import decoded, read_all_parts
+from hpn.web.door.visit import current
 from hpn.web.form.linked import query_part
+from hpn.web.motor_cells import CellRow
 from hpn.web.motor_lists import SERVER, MotorList, draft_of
-from hpn.web.motor_tables import BOUNDS, as_text, motors_in
+from hpn.web.motor_tables import BOUNDS, as_text, left_out, motors_in
 from hpn.web.pages.reading import read
 from hpn.web.pages.rendering import or_reason, page
 from hpn.web.pages.saved_list import changed_since, version_of
 from hpn.web.pages.table_upload import NOTHING, TableUpload, content_of, show_form
-from hpn.words.wording import N_, Sentence
+from hpn.words.reader import Reader
+from hpn.words.wording import N_, Sentence, first_of
 
 ADDRESS = "/motor-lists"
 REASON = "motor_list_refused.html"
@@ -42,8 +46,11 @@ REASON = "motor_list_refused.html"
 UNAVAILABLE = N_("Motor lists are temporarily unavailable: try again in a few seconds.")
 NO_NAME = N_("Name the list.")
 NO_MOTORS = N_("The table has no motor that can be taken.")
-MOST_SHOWN = 300
-"""Maximum motors that a list's page shows as a table; its text has all of them."""
+NO_ROWS = N_("Type a motor into the sheet.")
+OVERTAKEN = N_("Somebody else has saved this list since you opened it. Different from yours: {names}.")
+MOST_SHOWN = motor_cells.MOST_ROWS - 1
+"""Maximum motors that a list's page shows as a sheet; a longer list is edited as text."""
+MOST_NAMED = 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,15 +58,28 @@ class MotorUpload(TableUpload):
     """Table of motors as read, and its motors.
 
     `list` is the id of the list to replace, blank for a new one, and `version` its version when it was opened; `link`
-    is the application whose pairs are wanted.
+    is the application whose pairs are wanted. `cells` are the rows of a sheet, None for a table, and `wrong` are the
+    numbers of those that can't be read; `at` is the row that the focus goes to. `theirs` is the version that somebody
+    else has saved since.
     """
 
     name: str = ""
     link: str = ""
     list: str = ""
     version: str = ""
+    theirs: str = ""
+    cells: tuple[CellRow, ...] | None = field(default=None, repr=False)
+    wrong: tuple[int, ...] = ()
+    at: int = 0
+    is_complete: bool = False
     notes: tuple[Sentence, ...] = ()
     motors: tuple[MotorEntry, ...] = field(default=(), repr=False)
+
+    @property
+    def shown_cells(self) -> tuple[CellRow, ...]:
+        """Rows of the sheet with an empty one at the end, as long as there is room for it."""
+        cells = self.cells or ()
+        return (*cells, motor_cells.BLANK) if len(cells) < motor_cells.MOST_ROWS else cells
 
 
 # --- Lists ------------------------------------------------------------------------------------------------------------
@@ -72,7 +92,7 @@ async def show_lists(request: Request) -> Response:
         "lines": await motor_lists.lines_of(request),
         "server": len(request.app.state.catalogue.motors),
         "draft": MotorUpload(),
-        "roles": MOTORS.by_role,
+        **of_sheet(),
     }
     return await compute(request, "pages", page, request, "motor_lists.html", **context)
 
@@ -92,7 +112,11 @@ async def _list_page(request: Request, name: str, motors: list[MotorEntry], save
     may_change = saved is not None and request.app.state.gate.may_change(request, saved.owner)
     draft = MotorUpload()
     if saved is not None and may_change:
-        draft = MotorUpload(name=saved.name, text=as_text(motors), list=saved.id, version=str(saved.version))
+        draft = MotorUpload(name=saved.name, list=saved.id, version=str(saved.version))
+        if len(motors) > MOST_SHOWN:
+            draft = replace(draft, text=as_text(motors), of=ANY)
+        else:
+            draft = replace(draft, cells=motor_cells.rows_of(motors, current().decimal))
     context: dict[str, Any] = {
         "title": name,
         "saved": saved,
@@ -100,9 +124,16 @@ async def _list_page(request: Request, name: str, motors: list[MotorEntry], save
         "count": len(motors),
         "may_change": may_change,
         "draft": draft,
-        "roles": MOTORS.by_role,
+        **of_sheet(),
     }
     return await compute(request, "pages", page, request, "motor_list.html", **context)
+
+
+def of_sheet() -> dict[str, Any]:
+    """Values of every page with a form for motors: the figures of a table, and the columns of a sheet."""
+    reader = Reader(current().language)
+    columns = [(role, column, motor_cells.unit_of(role, reader)) for role, column in motor_cells.COLUMNS.items()]
+    return {"roles": MOTORS.by_role, "sheet_columns": columns}
 
 
 # --- Reading and keeping ----------------------------------------------------------------------------------------------
@@ -122,34 +153,57 @@ async def _uploaded(request: Request, id: str) -> Response:
     draft, refusal = MotorUpload(list=id), None
     try:
         require_same_origin(request)
-        draft, keeps = await _read(request, id)
-        saved = await motor_lists.changeable(request, id) if id else None
-        if keeps and not draft.problems and draft.table and draft.table.whole:
-            return await _store(request, draft, saved)
+        parts = await read_all_parts(request)
+        texts = [(name, decoded(part)) for name, part in parts if name not in ("file", "table")]
+        fields = dict(texts)
+        draft = _typed(id, fields, motor_cells.rows_in(texts))
+        if "do" not in fields:
+            draft = await _read(request, draft, dict(parts), fields)
+            saved = await motor_lists.changeable(request, id) if id else None
+            if draft.is_complete and ("keep" in fields or "over" in fields):
+                if saved and version_of({"version": draft.version}) not in (None, saved.version):
+                    draft = replace(draft, theirs=str(saved.version))
+                    raise Problem(412, _overtaken(draft, saved))
+                return await _store(request, draft, saved)
     except (Problem, StoreUnavailableError) as error:
         refusal = error
-    return await show_form(request, "motor_list_read.html", draft, refusal, UNAVAILABLE, roles=MOTORS.by_role)
+        if isinstance(error, Problem) and error.status_code == 404:
+            draft = replace(draft, list="", version="")  # deleted meanwhile: it can be stored as a new list
+    return await show_form(request, "motor_list_read.html", draft, refusal, UNAVAILABLE, **of_sheet())
 
 
-async def _read(request: Request, id: str) -> tuple[MotorUpload, bool]:
-    """Table read beside the service, and True if it is to be stored as read."""
-    parts = await read_parts(request)
-    fields = {name: decoded(part) for name, part in parts.items() if name not in ("file", "table")}
-    content = await content_of(request, parts, fields.get("text", ""))
-    draft = MotorUpload(
+def _typed(id: str, fields: Mapping[str, str], cells: tuple[CellRow, ...] | None) -> MotorUpload:
+    """Content of a form as typed; `do` is the button for a further row, or for one row less."""
+    does, _, number = fields.get("do", "").partition(":")
+    is_begun = cells is not None or does == "add"
+    cells = motor_cells.without(cells or (), number) if does == "remove" else cells
+    return MotorUpload(
         name=" ".join(fields.get("name", "").split()),
         link=query_part(fields.get("link", "")),
         text=fields.get("text", ""),
         list=id,
-        version=fields.get("version", ""),
+        version=fields.get("over") or fields.get("version", ""),
+        of=ANY if fields.get("of") == ANY else "",
+        cells=(cells or ()) if is_begun else None,
+        at=len(cells or ()) + 1 if does == "add" else 0,
     )
+
+
+async def _read(
+    request: Request, draft: MotorUpload, parts: Mapping[str, bytes], fields: Mapping[str, str]
+) -> MotorUpload:
+    """Table of a form read beside the service."""
+    if draft.cells is not None:
+        return await _read_cells(request, draft, draft.cells, fields)
+    content = await content_of(request, parts, draft.text)
     if not content.strip():
-        return draft.refused(Sentence(NOTHING)), False
+        return draft.refused(Sentence(NOTHING))
     reading = await read(request, content, BOUNDS, fields)
-    return await compute(request, "pages", _draft_of, draft, content, reading), "keep" in fields
+    is_seen = fields.get("of") == reading.of  # its preview, with all that is left out
+    return await compute(request, "pages", _draft_of, draft, content, reading, is_seen)
 
 
-def _draft_of(draft: MotorUpload, content: bytes | str, reading: Reading) -> MotorUpload:
+def _draft_of(draft: MotorUpload, content: bytes | str, reading: Reading, is_seen: bool) -> MotorUpload:
     table = reading.table
     if table is None:
         return draft.refused(Sentence(NO_MOTORS))
@@ -157,8 +211,47 @@ def _draft_of(draft: MotorUpload, content: bytes | str, reading: Reading) -> Mot
     problems: tuple[Sentence, ...] = (table.problem,) if table.problem else ()
     if table.whole and not motors:
         problems = (*notes, Sentence(NO_MOTORS))
+    is_complete = table.whole and bool(motors) and (is_seen or not left_out(table, notes))
     whole = draft.as_read(content, reading)
-    return replace(whole, problems=problems, notes=tuple(notes), motors=tuple(motors))
+    return replace(whole, problems=problems, notes=tuple(notes), motors=tuple(motors), is_complete=is_complete)
+
+
+async def _read_cells(
+    request: Request, draft: MotorUpload, cells: Sequence[CellRow], fields: Mapping[str, str]
+) -> MotorUpload:
+    """Cells of a sheet read as the table that they are."""
+    faults = motor_cells.faults_of(cells) if cells else [Sentence(NO_ROWS)]
+    if faults:
+        return draft.refused(*faults)
+    sheet = motor_cells.table_of(cells, Reader(current().language))
+    reading = await read(request, sheet.text, sheet.bounds, {**fields, **motor_cells.answers()})
+    return await compute(request, "pages", _cells_read, draft, cells, reading)
+
+
+def _cells_read(draft: MotorUpload, cells: Sequence[CellRow], reading: Reading) -> MotorUpload:
+    table = reading.table
+    if table is None or table.problem:
+        return draft.refused(table.problem if table and table.problem else Sentence(NO_MOTORS))
+    draft = replace(draft, table=table)
+    if not table.whole:
+        return draft.refused(*table.questions)
+    motors, notes = motors_in(table)
+    wrong, lost = motor_cells.unread(cells, table, motors), left_out(table, notes)
+    if wrong or lost or not motors:
+        rows = Sentence(motor_cells.UNREAD, {"rows": first_of(wrong, motor_cells.MOST_NAMED)})
+        problems = [*([rows] if wrong else []), *lost] or [Sentence(NO_MOTORS)]
+        return replace(draft.refused(*problems), wrong=wrong, at=wrong[0] if wrong else 0)
+    return replace(draft, motors=tuple(motors), is_complete=True)
+
+
+def _overtaken(draft: MotorUpload, saved: SavedMotorList) -> Sentence:
+    """Sentence on a list that somebody else has saved since, with the motors that differ from the typed ones."""
+    own, theirs = (
+        {motor.designation: motor.model_dump() for motor in motors}
+        for motors in (draft.motors, motor_lists.entries_in(saved))
+    )
+    names = [name for name in {**own, **theirs} if own.get(name) != theirs.get(name)]
+    return Sentence(OVERTAKEN, {"names": first_of(names, MOST_NAMED) or "–"})
 
 
 async def _store(request: Request, draft: MotorUpload, saved: SavedMotorList | None) -> Response:
