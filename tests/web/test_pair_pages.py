@@ -35,7 +35,8 @@ def query(application: Json, **own: str) -> str:
 
 def ranked(page: str) -> list[tuple[str, str]]:
     """Gears and motors of the ranked table of a page."""
-    rows = re.findall(r"<tr[^>]*>(.*?)</tr>", page[page.index("pairs-table") : page.index("</table>")], re.S)[1:]
+    start = page.index("pairs-table")
+    rows = re.findall(r"<tr[^>]*>(.*?)</tr>", page[start : page.index("</table>", start)], re.S)[1:]
     plain = [re.sub(r"<[^>]+>", "|", row) for row in rows]
     cells = [[cell.strip() for cell in row.split("|") if cell.strip()] for row in plain]
     return [(row[1], row[2]) for row in cells]
@@ -171,6 +172,57 @@ def test_an_axis_of_a_machine_has_pairs_and_takes_one(keeping: TestClient, list_
     given = parse_qs(urlsplit(address).query)
     assert "Tmn" in given and "Lh" not in given  # common values stay the machine's
     assert keeping.get(address).status_code == 200
+
+
+def test_without_an_application_the_page_says_where_to_begin_and_shows_no_error(keeping: TestClient) -> None:
+    page = keeping.get("/pairs")
+
+    assert page.status_code == 200
+    assert 'class="error"' not in page.text
+    step = page.text[page.text.index("first-step") :].partition("</p>")[0]
+    assert re.findall(r'href="([^"]*)"', step) == ["/", "/machines"]
+
+
+def test_an_axis_without_a_cycle_leads_to_its_fields(keeping: TestClient) -> None:
+    machine = {"title": "Open", "common": {}, "axes": [{"name": "Arm"}]}
+    id = keeping.post("/api/v1/machines", json=machine).json()["id"]
+
+    page = keeping.get(f"/machines/{id}/axes/1/pairs")
+
+    assert page.status_code == 200 and 'class="error"' not in page.text
+    assert f'href="/machines/{id}/axes/1"' in page.text[page.text.index("first-step") :]
+
+
+def figures(page: str) -> list[str]:
+    """Facts of the axis on a page, each in one line."""
+    part = page[page.index("pairs-axis") : page.index("</dl>", page.index("pairs-axis"))]
+    return [
+        " ".join(unescape(re.sub(r"<[^>]+>", " ", fact)).split()) for fact in re.findall(r"<dd>(.*?)</dd>", part, re.S)
+    ]
+
+
+def test_the_axis_stands_beside_its_pairs(keeping: TestClient, list_id: str) -> None:
+    """TYPED has 10 Nm at 100 rpm and 8 Nm at 60 rpm; the service's answer has T_max and n_out,max of the motion."""
+    typed = figures(keeping.get(query(TYPED, list=list_id)).text)
+    assert typed == ["10 Nm · 100 rpm · 1 s −8 Nm · 60 rpm · 0.5 s", "0.05 kg·m²", "10 Nm", "100 rpm"]
+
+    moved = figures(keeping.get(query(MOVED, list=list_id)).text)
+    duty = keeping.post("/api/v1/select", json=MOVED).json()["duty"]
+    shown = [float(text.split()[0].replace("\u202f", "")) for text in moved[1:]]
+    names = ("load_inertia_kgm2", "maximum_torque_Nm", "maximum_output_speed_rpm")
+    assert shown == pytest.approx([duty[name] for name in names], rel=5e-3)  # three digits are shown
+
+
+def test_a_screenful_of_motors_is_open_and_the_rest_folded_with_its_count(keeping: TestClient) -> None:
+    text = "Motor;M_N [Nm];M_max [Nm]\n" + "".join(f"M{k};1.5;5\n" for k in range(1, 316))
+    id = kept(keeping, "Many motors", text).rpartition("/")[2]
+
+    page = keeping.get(query(TYPED, list=id)).text
+
+    before, _, folded = page[page.index("pairs-form") :].partition("303 further motors")
+    assert (before.count('scope="row"'), folded.partition("</details>")[0].count('scope="row"')) == (12, 288)
+    assert "M_0" not in before and '<var class="symbol">J' not in before  # figures that no motor has
+    assert f'href="/motor-lists/{id}"' in folded
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,7 @@ from hpn.web.motor_lists import SERVER
 from hpn.web.pages.axis import neighbours, number_of
 from hpn.web.pages.axis_view import AxisView, view_of
 from hpn.web.pages.motor_lists import REASON, MotorUpload
-from hpn.web.pages.pairs_view import MOST_ROWS, ROWS_AT_FIRST, PairsView
+from hpn.web.pages.pairs_view import MOST_ROWS, ROWS_AT_FIRST, PairsView, facts_of
 from hpn.web.pages.rendering import or_reason, page
 from hpn.words.wording import N_, Sentence
 
@@ -45,7 +45,6 @@ RANKS: Mapping[PairRank, str] = {
     "inertia_ratio": N_("inertia ratio"),
     "resonance": N_("resonance, highest first"),
 }
-NO_CYCLE = N_("Pairs need an application: enter a duty cycle first.")
 NO_RESONANCE = N_("The lowest resonance must be a number above 0.")
 NO_RATIO = N_("The largest inertia ratio must be a number above 0.")
 NO_INERTIA = N_("Inertia ratio and resonance need a motion, or the inertia of the load in the application.")
@@ -177,6 +176,8 @@ def _page(
         "ranks": RANKS,
         "problems": problems,
         "typed": TYPED,
+        "motors": motors,
+        "facts": facts_of(query.form.application) if query.form.application else None,
         "draft": MotorUpload(link=urlencode(query.carried) if query.axis is None else ""),
         "roles": MOTORS.by_role,
     }
@@ -184,12 +185,10 @@ def _page(
 
 
 def _problems_of(query: PairsQuery, least: float | Sentence | None) -> list[Sentence]:
-    """Problems of an application and of the limits of its pairs; one that asks for a cycle if there is none."""
+    """Problems of an application and of the limits of its pairs."""
     problems = [one for one in (least, query.ratio) if isinstance(one, Sentence)]
     problems += [problem.message for problem in query.form.problems if query.carried]
     application = query.application
-    if application is None and not problems:
-        return [Sentence(NO_CYCLE)]
     needs = (least is not None or query.ratio is not None) and not problems
     if needs and application and not application.duty_cycle.motion and not application.requirements.load_inertia_kgm2:
         problems.append(Sentence(NO_INERTIA))

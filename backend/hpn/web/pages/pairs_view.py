@@ -6,6 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
+from hpn.account.inputs import moves_of, phases_of
+from hpn.account.lines import Line, LineTable
 from hpn.account.readings import assumed_of, thermal_of
 from hpn.application import Application, Motor, MotorEntry, PairRank
 from hpn.catalogue import Catalogue
@@ -25,6 +27,7 @@ from hpn.explain.drawings.plane import Plane, motor_plane
 from hpn.links.writer import to_link
 from hpn.web.door.visit import current
 from hpn.web.form.linked import LONGEST_LINK
+from hpn.words.quantities import DUTY, INPUTS
 from hpn.words.reply import finite
 from hpn.words.wording import Sentence
 
@@ -52,6 +55,26 @@ class RejectedPairs:
     count: int
     motors: int
     nearest: Sequence[PairRow]
+
+
+@dataclass(frozen=True, slots=True)
+class AxisFacts:
+    """Facts of the axis that pairs are for: its moves, or else its phases, and figures of its cycle at the output."""
+
+    is_motion: bool
+    cycle: LineTable
+    lines: Sequence[Line]
+
+
+def facts_of(application: Application) -> AxisFacts:
+    """Facts of an application's axis; the inertia of the load is left out where it is not known."""
+    motion, duty = application.duty_cycle.motion, Duty.of([application])
+    inertia = finite(duty.load_inertia_kgm2.item())
+    name = "load_inertia_kgm2"
+    lines = [Line(f"duty.{name}", INPUTS[f"requirements.{name}"], inertia, "kgm2", "computed")] if inertia else []
+    for name, unit in (("maximum_torque_Nm", "Nm"), ("maximum_output_speed_rpm", "rpm")):
+        lines.append(Line(f"duty.{name}", DUTY[name], getattr(duty, name).item(), unit, "computed"))
+    return AxisFacts(motion is not None, moves_of(motion) if motion else phases_of(application.duty_cycle), lines)
 
 
 @dataclass(frozen=True)
