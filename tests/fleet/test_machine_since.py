@@ -65,7 +65,7 @@ def test_a_common_value_marks_the_axes_whose_answers_it_changes(client: TestClie
 
     differ = client.get(f"/api/v1{machine}/differences?from=A&to=now").json()["axes"]
     assert len(re.findall(r'id="axis-(\d+)"', page)) == len(differ) > 0
-    assert re.search("For every axis : Maximum utilisation 0.9 0.2", panel(page)), panel(page)
+    assert re.search("For every axis : Maximum utilisation 90 % 20 %", panel(page)), panel(page)
 
 
 def marks(page: str) -> dict[int, tuple[str, bool]]:
