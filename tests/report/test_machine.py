@@ -6,8 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 from msgspec import structs
+from pydantic import ValidationError
 
 from hpn.application import Application, InputError
+from hpn.application.faults import sentences_of
 from hpn.catalogue import Catalogue, load_catalogue
 from hpn.documents.answers import AxisFault
 from hpn.documents.revision import Frozen
@@ -21,7 +23,7 @@ from hpn.files.machine.pdf import pdf
 from hpn.files.machine.words import fault_of, ranges
 from hpn.words.reader import Reader
 from hpn.words.wording import Sentence
-from tests.build import TURNING, cycle, phase, worked_example
+from tests.build import TURNING, Json, cycle, phase, worked_example
 from tests.machines import COMMON, axis, frozen, packing_line
 from tests.report.cases import language
 from tests.report.machines import AMERICAN, BEYOND, LINK, TITLE, export_of, plain, with_and_without_tolerance
@@ -264,6 +266,44 @@ FOUND = Sentence("must be a number, such as 9.3, not {found}", {"found": '"x"'})
 def test_a_fault_is_said_as_an_engineer_says_it(pointer: str, sentence: Sentence, english: str, german: str) -> None:
     fault = fault_of(AxisFault.at(pointer, sentence, "code"))
     assert ENGLISH.sentence(fault) == english and GERMAN.sentence(fault).startswith(german)
+
+
+GRAVITY = {"inertia_kgm2": 0.1, "gravity_mass_kg": 12, "gravity_radius_mm": 250}
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "move", "english", "german"),
+    [
+        (
+            GRAVITY,
+            {"profile": "modified_sine", "angle_deg": 90, "time_s": 1},
+            "Moment of inertia includes the gravity mass and must be at least 0.75 kg·m²",
+            "Trägheitsmoment enthält die Schwerkraftmasse und muss mindestens 0,75 kg·m² betragen",
+        ),
+        (
+            {"inertia_kgm2": 1},
+            {"profile": "trapezoidal", "angle_deg": 90, "time_s": 1, "speed_rpm": 1},
+            "Peak speed of move 1 must be above 15 rpm (distance over time)",
+            "Spitzendrehzahl der Bewegung 1 muss über 15 min⁻¹ liegen (Weg durch Zeit)",
+        ),
+        (
+            {"inertia_kgm2": 1},
+            {"profile": "trapezoidal", "angle_deg": 90},
+            "Move 1: a move with the profile trapezoidal needs ",
+            "Teilbewegung 1: eine Teilbewegung mit dem Profil trapezoidal braucht ",
+        ),
+        ({"inertia_kgm2": 1}, {"profile": "dwell", "time_s": 1}, "Moves: nothing", "Teilbewegungen: nichts"),
+    ],
+    ids=["inertia", "speed", "a whole move", "all moves"],
+)
+def test_a_fault_of_a_motion_is_in_the_readers_language(mechanism: Json, move: Json, english: str, german: str) -> None:
+    motion = {"mechanism": {"type": "rotary", **mechanism}, "moves": [move]}
+    with pytest.raises(ValidationError) as error:
+        Application.model_validate({"duty_cycle": {"motion": motion}})
+    (fault,) = AxisFault.of(sentences_of(error.value))
+    assert fault.detail == error.value.errors()[0]["msg"]
+    for reader, text in ((ENGLISH, english), (GERMAN, german)):
+        assert plain(reader.sentence(fault_of(fault))).startswith(plain(text))
 
 
 def test_every_axis_has_its_page_and_an_open_one_says_why(line: Frozen, pages: Callable[[Reader], list[str]]) -> None:

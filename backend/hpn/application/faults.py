@@ -1,12 +1,14 @@
 """Faults of an input: their places, texts that name the remedy, and codes for programs."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from hpn.application.tolerances import WITH_VALUES
+from hpn.physics.motion.refusals import REFUSALS
 from hpn.words.fields import UNKNOWN
 from hpn.words.likeness import likeness
 from hpn.words.wording import N_, Sentence, Value
@@ -28,7 +30,7 @@ OF_PHASE, OF_ROW = N_("phase {number}: {reason}"), N_("row {number}: {reason}")
 _PLACED = {OF_PHASE: PHASE_INPUT, OF_ROW: N_("{input} in row {number}")}
 """Texts with the place of an input, and its name with this place."""
 
-_PREDICATE = re.compile("(?:is|must|may|has|needs|gives|does|selects|takes) ")
+_PREDICATE = re.compile("(?:is|must|may|has|needs|gives|does|selects|takes|includes|replaces|acts|leaves) ")
 """Begin of an English text that is a sentence behind the name of its input."""
 
 NOT_A_NUMBER, NOT_AN_INTEGER = N_("must be a number, such as 9.3"), N_("must be a whole number, such as 5")
@@ -134,6 +136,9 @@ BOUNDS = {
 }
 """Sentences with values, by pydantic's types of errors."""
 
+OWN: Mapping[str, str] = {**REFUSALS, **WITH_VALUES}
+"""Sentences with values, by our own types of errors."""
+
 
 def sentence_of(entry: ErrorDetails) -> Sentence:
     """Pydantic's message in words that name the remedy; for a misspelt field the likely one."""
@@ -144,6 +149,8 @@ def sentence_of(entry: ErrorDetails) -> Sentence:
 
 def _plain_sentence(entry: ErrorDetails) -> Sentence:
     context, text = entry.get("ctx", {}), _plain_message(entry)
+    if template := OWN.get(entry["type"]):
+        return Sentence(template, context)
     values: dict[str, Value] = {
         "bound": text.rpartition(" ")[2],
         "most": str(context.get("max_length")),

@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from hpn.application import Application, InputError
+from hpn.application.faults import sentence_of
 from hpn.application.motion import Motion
 from hpn.application.tolerances import LOADS, Interval, Place
 from hpn.catalogue import Catalogue
@@ -21,7 +22,6 @@ from hpn.engine.box import Box, moved
 from hpn.engine.check import Check
 from hpn.engine.duty import Duty
 from hpn.physics.equations import FloatArray
-from hpn.physics.motion.refusals import REFUSALS
 from hpn.words.motion import MOTION
 from hpn.words.wording import N_, Sentence
 
@@ -197,12 +197,10 @@ def _no_motion(error: ValidationError) -> Sentence:
     """Sentence on an invalid corner: the input of its first error, and the valid values."""
     first = error.errors(include_url=False, include_input=False)[0]
     field = ("", *first["loc"])[-1]
-    template = REFUSALS.get(first["type"], "{text}")
-    reason = Sentence(template, first.get("ctx", {}) if template != "{text}" else {"text": first["msg"]}, ("text",))
     named = MOTION.get(f"move.{field}") or MOTION.get(f"mechanism.{field}")
     if named is None:
-        return Sentence(NO_MOTION, {"reason": reason})
-    return Sentence(NO_INPUT_OF_MOTION, {"input": named.name, "reason": reason}, ("input",))
+        return Sentence(NO_MOTION, {"reason": sentence_of(first)})
+    return Sentence(NO_INPUT_OF_MOTION, {"input": named.name, "reason": sentence_of(first)}, ("input",))
 
 
 def _with_motion(application: Application, motion: Motion) -> Application:

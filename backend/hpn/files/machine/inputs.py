@@ -29,6 +29,7 @@ AXIS = {
     "duty_cycle": Named(N_("Duty cycle")),
     "duty_cycle.phases": Named(N_("Duty cycle")),
     "duty_cycle.motion": Named(N_("Motion")),
+    "motion.moves": Named(N_("Moves")),
 }
 """Names of the fields of an axis or a document outside its application, and of its duty cycle."""
 
@@ -37,6 +38,9 @@ COLUMNS = {each.place: each.named for each in AXIS_INPUTS.by_role.values()}
 
 PHASE, MOVE = N_("{input}, phase {number}"), N_("{input}, move {number}")
 POINT = N_("{input}, point {number}")
+WHOLE = N_("Phase"), N_("Move")
+"""Names of a phase and of a move as a whole."""
+
 _POINT_OF = "requirements.motor.curve"
 _POINT = re.compile(r"requirements\.motor\.curve\.([0-9]{1,3})\.[A-Za-z_]+")
 _TOLERANCE = re.compile(r"tolerances\.(.+?)(?:\.(minus|plus))?(?:\.(percent|absolute))?")
@@ -76,6 +80,8 @@ def label_of(pointer: str) -> Sentence:
         return Sentence("{sign} {input}", {"sign": sign, "input": line.place})
     if row is None:
         return Sentence("{text}", {"text": named.name}, ("text",))
+    if path.endswith(f".{row}"):
+        return Sentence("{input} {number}", {"input": WHOLE[path.startswith(_MOTION)], "number": row + 1}, ("input",))
     template = MOVE if path.startswith(_MOTION) else PHASE
     return Sentence(template, {"input": named.name, "number": row + 1}, ("input",))
 
