@@ -95,9 +95,9 @@ def speak() -> str:
 async def test_nothing_of_a_strangers_file_gets_into_the_log_and_a_text_comes_back_as_one(
     roomy: Pool, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    found = await roomy.run_beside(speak)
+    result = await roomy.run_beside(speak)
 
-    assert (found, type(found)) == ("40 Nm", str)
+    assert (result, type(result)) == ("40 Nm", str)
     assert capfd.readouterr() == ("", "")
 
 
@@ -108,8 +108,8 @@ def read_table() -> Reading:
 
 @pytest.mark.anyio
 async def test_a_reading_comes_back_as_it_was(roomy: Pool) -> None:
-    found = await roomy.run_beside(read_table)
-    assert found == read_table() and found.table and found.table.choices and found.table.shown
+    result = await roomy.run_beside(read_table)
+    assert result == read_table() and result.table and result.table.choices and result.table.shown
 
 
 class Trap:
@@ -123,7 +123,7 @@ class Trap:
 def test_an_answer_is_never_run(head: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises((EOFError, ValueError)):
-        CallResult.received(io.BytesIO(head + pickle.dumps(Trap())))
+        CallResult.from_pipe(io.BytesIO(head + pickle.dumps(Trap())))
     assert list(tmp_path.iterdir()) == []
 
 

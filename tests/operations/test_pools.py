@@ -31,9 +31,9 @@ from tests.state import state_of
 
 def test_all_places_are_taken_and_the_next_is_refused_until_one_is_given_back() -> None:
     pool = Pool(Places(1, 3))
-    with ExitStack() as held:
+    with ExitStack() as value_held:
         for _ in range(4):
-            held.enter_context(pool.place())
+            value_held.enter_context(pool.place())
         with pytest.raises(Problem) as refused, pool.place():
             pass
 
@@ -58,19 +58,19 @@ def request_of(*messages: str) -> Request:
 @pytest.mark.anyio
 async def test_a_client_that_leaves_while_waiting_gives_up_the_place_and_nothing_is_computed() -> None:
     pool, busy = Pool(Places(1, 3)), threading.Event()
-    done: list[int] = []
+    outcome: list[int] = []
     first = asyncio.create_task(pool.run(busy.wait, 20))
 
     with pytest.raises(Problem) as left:
-        await while_present(request_of("http.request", "http.disconnect"), pool.run(done.append, 1))
+        await while_present(request_of("http.request", "http.disconnect"), pool.run(outcome.append, 1))
     await asyncio.sleep(0)  # the loop hears of it
     await asyncio.sleep(0)
     busy.set()
     await first
-    await pool.run(done.append, 2)
+    await pool.run(outcome.append, 2)
 
     assert left.value.status_code == CLIENT_CLOSED
-    assert done == [2]
+    assert outcome == [2]
 
 
 @pytest.mark.anyio
@@ -190,7 +190,7 @@ async def test_a_service_that_ends_ends_work_beside_and_closes_nothing_that_is_r
     pool: Pool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The answer is read late, so that a pipe closed at once would be found closed."""
-    file, receive = tmp_path / "beats", CallResult.received
+    file, receive = tmp_path / "beats", CallResult.from_pipe
 
     def receive_late(pipe: Any) -> Any:
         while not file.exists():
@@ -199,7 +199,7 @@ async def test_a_service_that_ends_ends_work_beside_and_closes_nothing_that_is_r
         time.sleep(0.1)
         return receive(pipe)
 
-    monkeypatch.setattr(CallResult, "received", receive_late)
+    monkeypatch.setattr(CallResult, "from_pipe", receive_late)
     work = asyncio.create_task(pool.run_beside(partial(beat, file)))
     while not file.exists():
         await asyncio.sleep(0.01)

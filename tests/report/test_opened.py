@@ -13,7 +13,7 @@ import pytest
 from hpn.application import Application
 from hpn.catalogue import Catalogue
 from hpn.files.aas.courses import LINEAR, ROTATIVE
-from hpn.files.aas.opened import MOST_BYTES, OpenedSizing, is_shell, opened
+from hpn.files.aas.opened import MOST_BYTES, OpenedSizing, is_shell, sizing_in
 from hpn.files.aas.sizing_ids import SIZING
 from hpn.files.aas.submodel import package
 from tests.build import Json, cycle, phase, worked_example
@@ -31,13 +31,13 @@ def _no_report(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def rezipped(content: bytes, alter: Alter) -> bytes:
     """A package with its parts altered; None leaves one out."""
-    made = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(content)) as source, zipfile.ZipFile(made, "w") as target:
+    output = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(content)) as source, zipfile.ZipFile(output, "w") as target:
         for name in source.namelist():
             part = alter(name, source.read(name))
             if part is not None:
                 target.writestr(name, part)
-    return made.getvalue()
+    return output.getvalue()
 
 
 def without_application(content: bytes) -> bytes:
@@ -56,12 +56,12 @@ def test_a_package_comes_back_as_its_application(case: str, catalogue: Catalogue
     export = typed_export_of((CASES | MOVING)[case], catalogue)
     content = package(export)
 
-    found = opened(content)
+    sizing = sizing_in(content)
 
     assert is_shell(content)
-    assert application_of(found) == export.application
-    assert "SizingResult" in found.unused
-    assert not any("MotionPatternSections" in place for place in found.unused)
+    assert application_of(sizing) == export.application
+    assert "SizingResult" in sizing.unused
+    assert not any("MotionPatternSections" in place for place in sizing.unused)
 
 
 def as_numbers(application: Application) -> list[list[float]]:
@@ -76,18 +76,18 @@ def test_phases_come_back_out_of_the_elements_alone(case: str, catalogue: Catalo
     """Two ways that agree: application.json, and the sections with their courses, in SI units and back."""
     export = typed_export_of(CASES[case], catalogue)
 
-    found = application_of(opened(without_application(package(export))))
+    result = application_of(sizing_in(without_application(package(export))))
 
-    np.testing.assert_allclose(as_numbers(found), as_numbers(export.application), rtol=1e-9)  # ends are sums of times
+    np.testing.assert_allclose(as_numbers(result), as_numbers(export.application), rtol=1e-9)  # ends are sums of times
 
 
 def test_elements_that_another_tool_has_changed_count_and_not_the_stale_application(catalogue: Catalogue) -> None:
     content = package(typed_export_of(EVERYTHING, catalogue))
 
-    found = opened(rezipped(content, lambda name, part: part.replace(b">-40.0<", b">-44<")))
+    sizing = sizing_in(rezipped(content, lambda name, part: part.replace(b">-40.0<", b">-44<")))
 
-    assert application_of(found).duty_cycle.load_phases[0].torque_Nm == 44.0
-    assert "SizingProjectInformation" in found.unused
+    assert application_of(sizing).duty_cycle.load_phases[0].torque_Nm == 44.0
+    assert "SizingProjectInformation" in sizing.unused
 
 
 # --- Sizings of other tools -------------------------------------------------------------------------------------------
@@ -96,13 +96,13 @@ def test_elements_that_another_tool_has_changed_count_and_not_the_stale_applicat
 def test_a_rotary_course_of_another_tool_comes_to_phases_by_its_inertia_and_friction() -> None:
     """A trapezoid of 2 rad/s up in 1 s, 3 s on, down in 1 s: T = J α + T_f − T_load, by hand."""
     course = "Time;AngularPosition;AngularVelocity;AngularAcceleration\n0;0;0;2\n1;1;2;0\n4;7;2;-2\n5;8;0;0\n"
-    given = section(
+    inputs = section(
         "RotativeSection", ROTATIVE, "/aasx/a.csv", MomentOfInertiaOfLoad=3, FrictionTorque="1", LoadTorque=-4.0
     )
 
-    found = application_of(opened(packed(shell([given]), a=course)))
+    application = application_of(sizing_in(packed(shell([inputs]), a=course)))
 
-    up, on, down = found.duty_cycle.load_phases
+    up, on, down = application.duty_cycle.load_phases
     assert (up.torque_Nm, on.torque_Nm, down.torque_Nm) == (3 * 2 + 1 + 4, 5, -6 + 5)
     assert up.speed_rpm == pytest.approx(1 * 30 / math.pi, rel=1e-12)
     assert up.peak_speed_rpm == pytest.approx(2 * 30 / math.pi, rel=1e-12)
@@ -112,13 +112,13 @@ def test_a_rotary_course_of_another_tool_comes_to_phases_by_its_inertia_and_fric
 def test_a_linear_course_comes_to_phases_by_mass_weight_and_feed() -> None:
     """m (a + g sin β) ρ, ρ the feed over 2 π, over the efficiency where the motor drives."""
     course = "Time,Position,LinearVelocity,LinearAcceleration\n0,0,0,0.5\n2,1,1,0.5\n"
-    given = section("LinearSection", LINEAR, "/aasx/a.csv", LoadMass=100)
+    inputs = section("LinearSection", LINEAR, "/aasx/a.csv", LoadMass=100)
     values = {"Efficiency": 0.8, "FeedConstant": 0.02, "InclinationAngle": math.pi / 6}
     spindle = element("SpindleDrive", [element(name, value) for name, value in values.items()], "Entity")
 
-    found = application_of(opened(packed(shell([given], spindle), a=course)))
+    application = application_of(sizing_in(packed(shell([inputs], spindle), a=course)))
 
-    (lift,) = found.duty_cycle.load_phases
+    (lift,) = application.duty_cycle.load_phases
     radius = 0.02 / (2 * math.pi)
     assert lift.torque_Nm == pytest.approx(100 * (0.5 + 9.80665 / 2) * radius / 0.8, rel=1e-12)
     assert lift.speed_rpm == pytest.approx(0.5 / radius * 30 / math.pi, rel=1e-12)
@@ -132,23 +132,23 @@ def test_rest_at_the_end_is_the_pause_and_a_change_of_direction_ends_a_phase() -
         for name, load in (("a", -5), ("b", 0))
     ]
 
-    found = application_of(opened(packed(shell(sections), a=course, b=rest)))
+    application = application_of(sizing_in(packed(shell(sections), a=course, b=rest)))
 
-    assert [phase.speed_rpm > 0 for phase in found.duty_cycle.load_phases] == [True, False]
-    assert found.duty_cycle.pause_s == 3.0
+    assert [phase.speed_rpm > 0 for phase in application.duty_cycle.load_phases] == [True, False]
+    assert application.duty_cycle.pause_s == 3.0
 
 
 def test_what_is_not_used_is_listed_by_its_path_and_what_is_used_is_not() -> None:
     course = "Time,AngularPosition,AngularVelocity,AngularAcceleration\n0,0,2,0\n1,2,2,0\n"
-    given = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0, LeverArmAxialForce=0.1)
+    inputs = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0, LeverArmAxialForce=0.1)
     span = {**element("AmbientTemperatureMotor", "", "Range"), "min": "10", "max": 35}
     surroundings = element("Environmental", [span, element("Atex2Gas", "true")], "SubmodelElementCollection")
 
-    found = opened(packed(shell([given], Environmental=surroundings), a=course))
+    sizing = sizing_in(packed(shell([inputs], Environmental=surroundings), a=course))
 
-    assert application_of(found).requirements.ambient_temperature_degC == 35.0
+    assert application_of(sizing).requirements.ambient_temperature_degC == 35.0
     place = "ApplicationRequirements/MotionPattern/MotionPatternSections/RotativeSection/theirLeverArmAxialForce"
-    assert found.unused == (place, "ApplicationRequirements/Environmental/Atex2Gas")
+    assert sizing.unused == (place, "ApplicationRequirements/Environmental/Atex2Gas")
 
 
 @pytest.mark.parametrize(
@@ -161,39 +161,39 @@ def test_what_is_not_used_is_listed_by_its_path_and_what_is_used_is_not() -> Non
 )
 def test_what_acts_on_the_load_and_is_in_no_phase_is_said_apart(name: str, value: object, named: bool) -> None:
     """Of a table that turns: the weight of a mass off its centre would be missing without a word."""
-    given = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0, CompensationForce=0)
+    inputs = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0, CompensationForce=0)
     table = element("RotraryTable", [element(name, value)], "Entity")
 
-    found = opened(packed(shell([given], table), a=COURSE))
+    sizing = sizing_in(packed(shell([inputs], table), a=COURSE))
 
-    assert found.problem is None
-    assert (found.note is not None and f": {name}. Add" in found.note.text) == named
-    assert ("TransformationMechanism/RotraryTable" in found.unused) == (named or value == 0)
+    assert sizing.problem is None
+    assert (sizing.note is not None and f": {name}. Add" in sizing.note.text) == named
+    assert ("TransformationMechanism/RotraryTable" in sizing.unused) == (named or value == 0)
 
 
 def test_a_package_with_its_application_has_nothing_to_be_added(catalogue: Catalogue) -> None:
-    assert opened(package(typed_export_of(MOVING["rotary table"], catalogue))).note is None
+    assert sizing_in(package(typed_export_of(MOVING["rotary table"], catalogue))).note is None
 
 
 def test_a_temperature_that_is_no_number_of_degrees_is_listed_as_not_used() -> None:
-    given = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0)
+    inputs = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0)
     surroundings = element(
         "Environmental", [element("AmbientTemperatureMotor", "-10 – 60 °C")], "SubmodelElementCollection"
     )
 
-    found = opened(packed(shell([given], Environmental=surroundings), a=COURSE))
+    sizing = sizing_in(packed(shell([inputs], Environmental=surroundings), a=COURSE))
 
-    assert application_of(found).requirements.ambient_temperature_degC is None
-    assert "ApplicationRequirements/Environmental" in found.unused
+    assert application_of(sizing).requirements.ambient_temperature_degC is None
+    assert "ApplicationRequirements/Environmental" in sizing.unused
 
 
 def test_json_alone_has_no_course_and_says_what_is_missing() -> None:
-    given = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0)
+    inputs = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0)
 
-    found = opened(json.dumps(shell([given])).encode())
+    sizing = sizing_in(json.dumps(shell([inputs])).encode())
 
-    assert found.problem is not None
-    assert found.problem.text.startswith("RotativeSection: its course can’t be read")
+    assert sizing.problem is not None
+    assert sizing.problem.text.startswith("RotativeSection: its course can’t be read")
 
 
 def test_json_with_its_courses_inside_a_package_is_read_as_xml_is(catalogue: Catalogue) -> None:
@@ -208,9 +208,9 @@ ONE = section("RotativeSection", ROTATIVE, "/aasx/a.csv", LoadTorque=-4.0)
 
 def with_column(value: str) -> Json:
     """A section whose time is in a unit."""
-    given = json.loads(json.dumps(ONE))
-    given["value"][1]["value"][0]["value"] = value
-    return dict(given)
+    inputs = json.loads(json.dumps(ONE))
+    inputs["value"][1]["value"][0]["value"] = value
+    return dict(inputs)
 
 
 @pytest.mark.parametrize(
@@ -250,26 +250,26 @@ def with_column(value: str) -> Json:
     ids=range(14),
 )
 def test_what_can_not_be_read_is_said(environment: Json, course: str, text: str) -> None:
-    found = opened(packed(environment, a=course))
+    sizing = sizing_in(packed(environment, a=course))
 
-    assert found.problem is not None
-    assert text in found.problem.text
+    assert sizing.problem is not None
+    assert text in sizing.problem.text
 
 
 def bomb() -> bytes:
     """A package of kilobytes that unpacks to more than it may."""
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as target:
+    output = io.BytesIO()
+    with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED) as target:
         target.writestr("aasx/data.xml", SIZING.encode() + b" " * (MOST_BYTES + 1))
-    return made.getvalue()
+    return output.getvalue()
 
 
 def of_xml(text: str) -> bytes:
     """A package with this XML."""
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w") as target:
+    output = io.BytesIO()
+    with zipfile.ZipFile(output, "w") as target:
         target.writestr("aasx/data.xml", text)
-    return made.getvalue()
+    return output.getvalue()
 
 
 LAUGHS = (
@@ -296,10 +296,10 @@ OUTSIDE = f'<!DOCTYPE e [<!ENTITY x SYSTEM "file:///etc/passwd">]><e>{SIZING}&x;
     ids=range(9),
 )
 def test_hostile_packages_are_refused_in_words(content: bytes, text: str) -> None:
-    found = opened(content)
+    sizing = sizing_in(content)
 
-    assert found.problem is not None
-    assert text in found.problem.text
+    assert sizing.problem is not None
+    assert text in sizing.problem.text
 
 
 def test_a_cut_or_broken_package_is_refused_or_read_and_never_an_error(catalogue: Catalogue) -> None:
@@ -308,21 +308,21 @@ def test_a_cut_or_broken_package_is_refused_or_read_and_never_an_error(catalogue
     for place in range(0, len(content), len(content) // 150):
         broken = bytearray(content)
         broken[place] ^= 0x55
-        assert isinstance(opened(bytes(broken)), OpenedSizing)
-        assert isinstance(opened(content[:place]), OpenedSizing)
+        assert isinstance(sizing_in(bytes(broken)), OpenedSizing)
+        assert isinstance(sizing_in(content[:place]), OpenedSizing)
 
 
 def test_a_course_of_very_many_samples_is_refused(catalogue: Catalogue) -> None:
     rows = "".join(f"{k},{k % 7},{k * k % 5},0\n" for k in range(20_000))
 
-    found = opened(packed(shell([ONE]), a="Time,AngularPosition,AngularVelocity,AngularAcceleration\n" + rows))
+    sizing = sizing_in(packed(shell([ONE]), a="Time,AngularPosition,AngularVelocity,AngularAcceleration\n" + rows))
 
-    assert found.problem is not None
-    assert "more than 10000 phases" in found.problem.text
+    assert sizing.problem is not None
+    assert "more than 10000 phases" in sizing.problem.text
 
 
 def test_a_saved_order_code_and_title_change_nothing(catalogue: Catalogue) -> None:
     export = typed_export_of(cycle(phase(40, 250)), catalogue)
     named = replace(export, heading=replace(export.heading, title="<&>", ordering_code="HPN-20A-5-J6"))
 
-    assert application_of(opened(package(named))) == export.application
+    assert application_of(sizing_in(package(named))) == export.application

@@ -134,7 +134,7 @@ def drive_limit(limit_Nm: float) -> Quantity:
     return Quantity(limit_Nm, "Nm", 4, "down")
 
 
-def known(lines: Iterable[Line]) -> list[Line]:
+def with_values(lines: Iterable[Line]) -> list[Line]:
     """Lines with a value."""
     return [line for line in lines if line.value is not None]
 
@@ -170,7 +170,7 @@ class LineTable:
 
     def row(self, place: int) -> list[Line]:
         """Texts of one row, its name first."""
-        return known(column.head.of(column.values[place]) for column in (self.names, *self.columns))
+        return with_values(column.head.of(column.values[place]) for column in (self.names, *self.columns))
 
     def values(self) -> Iterator[Mapping[str, Value]]:
         """Values of each row by the places of their quantities."""

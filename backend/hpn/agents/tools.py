@@ -51,7 +51,7 @@ def answer(tool: str, arguments: Mapping[str, Any], catalogue: Catalogue, servic
             return ToolReply(within(_catalogue(arguments.get("designation"), catalogue, service)))
         application = Application.model_validate(arguments.get("application"))
         designation = arguments.get("designation") if tool == "explain" else None
-        return ToolReply(within(_judged(application, designation, catalogue, service)))
+        return ToolReply(within(_answer_on(application, designation, catalogue, service)))
     except _RefusedError as error:
         return ToolReply.refusal(str(error))
     except (ValidationError, InputError) as error:
@@ -73,7 +73,7 @@ def _require_known(tool: str, arguments: Mapping[str, Any]) -> None:
         raise _RefusedError("designation: must be text, such as HPN-20A-5")
 
 
-def _judged(application: Application, designation: str | None, catalogue: Catalogue, service: str) -> dict[str, Any]:
+def _answer_on(application: Application, designation: str | None, catalogue: Catalogue, service: str) -> dict[str, Any]:
     selection = select(application, catalogue, to_link)
     gear = None if designation is None else _gear(designation, catalogue)
     selection = with_gear(selection, application, catalogue, gear or "")
@@ -122,13 +122,13 @@ def _row(line: Line) -> list[Any]:
 def _refusal(error: ValidationError | InputError) -> str:
     """Faults of an application, each with its place and the name and unit of that input."""
     lines = [
-        f"{(pointer(at) or '/')[:MOST_REPEATED]}{_named(at)}: {text[:MOST_REPEATED]}"
+        f"{(pointer(at) or '/')[:MOST_REPEATED]}{_name_of(at)}: {text[:MOST_REPEATED]}"
         for at, text, _ in faults_of(error)
     ]
     return "\n".join((ASK, *shortened(lines, MOST_FAULTS)))
 
 
-def _named(location: Location) -> str:
+def _name_of(location: Location) -> str:
     """Name of an input with its unit, in parentheses; blank where the place has none."""
     names = [part for part in location if isinstance(part, str)]
     path = ".".join(names).replace("duty_cycle.phases.", "phase.")

@@ -54,7 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
     except Exception as error:
-        return _refused(error, options)
+        return _print_error(error, options)
 
 
 def _command(name: str) -> ModuleType:
@@ -69,7 +69,7 @@ def _command(name: str) -> ModuleType:
         gc.enable()
 
 
-def _refused(error: Exception, options: argparse.Namespace) -> int:
+def _print_error(error: Exception, options: argparse.Namespace) -> int:
     """Print the error in words; returns the exit code, which tells whose fault it is."""
     module = "hpn.cli.system" if isinstance(error, OSError) else "hpn.cli.refusals"
     code, lines = import_module(module).words_of(error, options)

@@ -10,7 +10,7 @@ from hpn.application.unique import require_unique
 from hpn.engine.candidates import Candidate
 from hpn.engine.checks import allowed
 from hpn.engine.selection import Selection, encode, select
-from hpn.files.aas.opened import is_shell, opened
+from hpn.files.aas.opened import is_shell, sizing_in
 from hpn.links.writer import to_link
 from hpn.web.settings import Settings
 from hpn.words.wording import MendableError, telling_decimals
@@ -44,7 +44,7 @@ def _application(name: str) -> Application:
 
 def _of_sizing(name: str, content: bytes) -> bytes:
     """JSON of the application in a sizing by IDTA 02021; its unused elements go to standard error."""
-    sizing = opened(content)
+    sizing = sizing_in(content)
     if sizing.problem:
         raise MendableError(f"{name}: {sizing.problem.text}")
     for place in sizing.unused:

@@ -72,7 +72,7 @@ def kinds_of(sought: Sequence[Sought], catalogue: Catalogue, *, most: int | None
     """Lightest sets for each number of kinds, from the present number down to the least, at most `most` kinds."""
     names = [gear.designation for gear in catalogue.gears]
     place = {name: index for index, name in enumerate(names)}
-    suits, used = _judged([axis.application for axis in sought], catalogue)
+    suits, used = _suitability([axis.application for axis in sought], catalogue)
     axes = GearChoices(
         suits,
         used,
@@ -89,7 +89,7 @@ def kinds_of(sought: Sequence[Sought], catalogue: Catalogue, *, most: int | None
     )
 
 
-def _judged(applications: Sequence[Application], catalogue: Catalogue) -> tuple[BoolArray, FloatArray]:
+def _suitability(applications: Sequence[Application], catalogue: Catalogue) -> tuple[BoolArray, FloatArray]:
     """True for the suitable gears of each application, and their utilisation, NaN for no candidate; both shape
     (A, G)."""
     place = {gear.designation: index for index, gear in enumerate(catalogue.gears)}

@@ -25,7 +25,7 @@ def exact_percent(share: float, reader: Reader) -> str:
     return f"{reader.exact(100 * share)}{GROUP}%"
 
 
-def used(export: Export, code: str | None, utilisation: float | None, reader: Reader) -> str:
+def utilisation_text(export: Export, code: str | None, utilisation: float | None, reader: Reader) -> str:
     """Utilisation inside a sentence, with the allowed one where that is below 1."""
     bound = bound_of(export, code)
     share = reader.percent(utilisation, bound)
@@ -36,7 +36,7 @@ def used(export: Export, code: str | None, utilisation: float | None, reader: Re
     )
 
 
-def measured(value: float | None, unit: str, reader: Reader, beside: float | None = None) -> str:
+def quantity_text(value: float | None, unit: str, reader: Reader, beside: float | None = None) -> str:
     """Computed number with its unit (suffix or symbol), with enough digits to differ from the number beside it."""
     return reader.with_unit(reader.figure(value, unit, beside), unit)
 

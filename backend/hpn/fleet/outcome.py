@@ -152,19 +152,19 @@ class _Answers:
         """Answers with the faults of rejected axes."""
         columns = [
             axis,
-            _named(self.selected, self.designations),
-            _named(self.governing, CODES),
+            _name_column(self.selected, self.designations),
+            _name_column(self.governing, CODES),
             _finite(self.utilisation),
             _finite(self.life_L10_h),
             _finite(self.shortest_life_h),
             pa.array([life or None for life in self.shortest_life_of.tolist()], pa.string()),
             _finite(self.limit_Nm),
             pa.array(self.suitable, mask=self.suitable < 0),
-            _named(self.runner_up, self.designations),
+            _name_column(self.runner_up, self.designations),
             _finite(self.average_torque_Nm),
             pa.array(self.holds == 1, mask=self.holds < 0),
             _finite(self.worst_utilisation),
-            _named(self.worst_governing, CODES),
+            _name_column(self.worst_governing, CODES),
             *_reasons(len(self.suitable), faults),
         ]
         return pa.Table.from_arrays(columns, schema=answer_fields(axis.type))
@@ -175,7 +175,7 @@ class _Answers:
         return self.designations.index(designation)
 
 
-def _named(places: NDArray[np.int32], names: Sequence[str]) -> pa.Array:
+def _name_column(places: NDArray[np.int32], names: Sequence[str]) -> pa.Array:
     return pa.DictionaryArray.from_arrays(pa.array(places, mask=places < 0), pa.array(names, pa.string())).cast(
         pa.string()
     )

@@ -90,10 +90,10 @@ def upright(grid: Grid) -> Grid:
     """The table with a row per phase: turned where its first column names the quantities."""
     if len(grid.rows) > MOST_TURNED:
         return grid
-    across = max(_named(row) for row in grid.rows)
+    across = max(_named_quantities(row) for row in grid.rows)
     turned = grid.transposed()
     down = max(
-        _named(row, with_units=across < 2) for row in turned.rows[:MOST_TURNED]
+        _named_quantities(row, with_units=across < 2) for row in turned.rows[:MOST_TURNED]
     )  # a row below the names has units
     if down < 2:
         return grid
@@ -114,7 +114,7 @@ def head_of(grid: Grid, *, named_in: Names | None = None) -> Head:
     """
     named_rows = named_in is not None
     top_rows = grid.rows[: max(1, min(HEAD_ROWS, HEAD_CELLS // grid.width))]
-    named = [max(_named(row), named_in(row) if named_in else 0) for row in top_rows]
+    named = [max(_named_quantities(row), named_in(row) if named_in else 0) for row in top_rows]
     if max(named) >= 2:
         bottom = named.index(max(named))
         end = bottom + 1
@@ -152,7 +152,7 @@ def _notes(grid: Grid, places: Sequence[int]) -> tuple[Sentence, ...]:
     return tuple(skipped(grid.numbers[place], " ".join(filter(None, grid.rows[place]))) for place in places)
 
 
-def _named(row: Sequence[str], *, with_units: bool = True) -> int:
+def _named_quantities(row: Sequence[str], *, with_units: bool = True) -> int:
     """Number of quantities that a row names, by name or by unit."""
     headings = [heading_of(cell) for cell in row[:MOST_COLUMNS]]
     quantities = {heading.kind or heading.likely for heading in headings if heading.names_quantity}

@@ -201,7 +201,7 @@ def _solved(application: Application, catalogue: Catalogue, chosen: str) -> Sele
     return with_gear(select(application, catalogue, to_link), application, catalogue, chosen)
 
 
-def _refused(link: str) -> str:
+def _refusal(link: str) -> str:
     """Why a file with a link has no application, and what to save in its place; blank for a file of a selection."""
     path = link.partition("?")[0]
     if path.endswith("/revisions"):
@@ -217,7 +217,7 @@ def _linked(form: Format, content: bytes) -> tuple[str, FileSubject]:
     for link in links:
         if (question := subject_of(link)) is not None:
             return link, question
-    if links and (refused := _refused(links[0])):
+    if links and (refused := _refusal(links[0])):
         raise UnreadableFileError(f"the {form.name} {refused} from the service")
     lack = f"leads to {links[0]}, which has none either" if links else "has no link"
     raise UnreadableFileError(

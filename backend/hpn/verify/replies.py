@@ -36,7 +36,7 @@ def verified(value: Json, catalogue: Catalogue) -> Verdict:
         if isinstance(value.get("axes"), list):
             return _machine(value, catalogue)
         if isinstance(value.get("result"), dict):
-            return _saved(value, catalogue)
+            return _verdict_on_saved(value, catalogue)
         if isinstance(value.get("candidates"), list):
             return _answer(value, catalogue)
     except (ValidationError, InputError) as error:
@@ -49,7 +49,7 @@ def verified(value: Json, catalogue: Catalogue) -> Verdict:
 # --- Selections -------------------------------------------------------------------------------------------------------
 
 
-def _saved(value: Json, catalogue: Catalogue) -> Verdict:
+def _verdict_on_saved(value: Json, catalogue: Catalogue) -> Verdict:
     """Verdict on a saved selection: its answer, and the fields copied from it."""
     result: Json = value["result"]
     application = Application.model_validate(value.get("application"))

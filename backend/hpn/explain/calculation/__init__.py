@@ -45,10 +45,10 @@ def calculation_of(
     the answer keeps only its comparisons.
     """
     sheet = CalculationSheet(candidate, duty, gear, with_listed_motor(application, catalogue), catalogue)
-    return tuple(step if _holds(step) else _as_saved(step) for make in STEPS for step in _known(make(sheet)))
+    return tuple(step if _holds(step) else _as_saved(step) for make in STEPS for step in _steps_until_gap(make(sheet)))
 
 
-def _known(steps: Iterable[Step]) -> Iterator[Step]:
+def _steps_until_gap(steps: Iterable[Step]) -> Iterator[Step]:
     """Steps up to the first one that needs a figure missing in the answer."""
     try:
         yield from steps

@@ -64,10 +64,10 @@ def is_shell(content: bytes) -> bool:
     return content.lstrip()[:1] == b"{" and all(mark in content for mark in IN_JSON)
 
 
-def opened(content: bytes) -> OpenedSizing:
+def sizing_in(content: bytes) -> OpenedSizing:
     """Application of a package or JSON, or the problem with it; raises nothing but MemoryError."""
     try:
-        return _Sizing(content).opened()
+        return _Sizing(content).result()
     except RefusedError as refused:
         return OpenedSizing(problem=refused.sentence)
     except ValidationError as error:
@@ -87,7 +87,7 @@ class _Sizing:
     parts: Mapping[str, bytes] = field(default_factory=dict)
     used: set[int] = field(default_factory=set)
 
-    def opened(self) -> OpenedSizing:
+    def result(self) -> OpenedSizing:
         self.parts = _unpacked(self.content) if self.content.startswith(MAGIC) else {"": self.content}
         sizing = next(self._sizings(), None)
         if sizing is None:

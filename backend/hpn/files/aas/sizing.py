@@ -226,7 +226,7 @@ def _figure(account: Account, name: str) -> float | None:
     return line.value if line is not None and isinstance(line.value, float) else None
 
 
-def _used(account: Account, share: str, value: str, code: str) -> dict[str, float | None]:
+def _shares(account: Account, share: str, value: str, code: str) -> dict[str, float | None]:
     """Share of a limit in percent, and the demand."""
     check = account.check(code)
     if check is None:
@@ -237,8 +237,8 @@ def _used(account: Account, share: str, value: str, code: str) -> dict[str, floa
 
 def _gearbox(export: Export) -> Statements:
     account, designation = export.account, export.candidate.designation
-    torque = _used(account, "MaxTorqueUtilizationPercentage", "MaxTorqueUtilization", "repeated_peak_torque")
-    speed = _used(
+    torque = _shares(account, "MaxTorqueUtilizationPercentage", "MaxTorqueUtilization", "repeated_peak_torque")
+    speed = _shares(
         account, "MaxRotationSpeedUtilizationPercentage", "MaxRotationSpeedUtilization", "maximum_input_speed"
     )
     return [
@@ -255,8 +255,8 @@ def _motor(account: Account) -> Iterator[model.Entity]:
     motor = account.application.requirements.motor if account.application else None
     if motor is None:
         return
-    torque = _used(account, "MaxTorqueUtilizationPercentage", "MaxTorqueUtilization", "motor_peak_torque")
-    speed = _used(account, "MaxRotationSpeedUtilizationPercentage", "MaxRotationSpeedUtilization", "motor_speed")
+    torque = _shares(account, "MaxTorqueUtilizationPercentage", "MaxTorqueUtilization", "motor_peak_torque")
+    speed = _shares(account, "MaxRotationSpeedUtilizationPercentage", "MaxRotationSpeedUtilization", "motor_speed")
     rated, ratio = account.check("motor_rated_torque"), account.check("inertia_ratio")
     used = rated.result.utilisation if rated else None
     named = motor.designation or NOT_GIVEN

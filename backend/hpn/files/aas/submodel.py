@@ -66,7 +66,7 @@ def package(export: Export, metamodel: Metamodel = "3.0") -> bytes:
     with aasx.AASXWriter(packed, failsafe=False) as writer:
         writer.write_core_properties(_properties(export))
         writer.write_all_aas_objects(DATA_PART, environment(export), files)
-    return _finished(packed.getvalue(), metamodel)
+    return _package(packed.getvalue(), metamodel)
 
 
 def environment(export: Export) -> model.DictIdentifiableStore[model.Identifiable]:
@@ -105,7 +105,7 @@ def _selection_result(export: Export) -> model.Submodel:
         *([model.File("Report", PDF_TYPE, REPORT)] if has_extra("report") else []),
         model.SubmodelElementCollection("Duty", _properties_of({one.field: one.value for one in export.account.cycle})),
         *_cycle(export),
-        model.SubmodelElementCollection("Figures", _calculated(export)),
+        model.SubmodelElementCollection("Figures", _candidate_figures(export)),
         model.SubmodelElementCollection("Checks", [_check(check) for check in export.account.checks]),
         model.SubmodelElementCollection("Notices", _notices(export)),
     ]
@@ -165,18 +165,18 @@ def _numbered(name: str, table: LineTable) -> Iterable[model.SubmodelElement]:
 def _figures(lines: Iterable[Line]) -> list[model.Property]:
     """Properties of a mechanism, a move or a phase, each with its name and unit in words."""
     return [
-        model.Property(line.field, type(line.value), line.value, display_name=model.MultiLanguageNameType(_named(line)))
+        model.Property(line.field, type(line.value), line.value, display_name=model.MultiLanguageNameType(_names(line)))
         for line in lines
     ]
 
 
-def _named(line: Line) -> dict[str, str]:
+def _names(line: Line) -> dict[str, str]:
     """Name of a line in every language, with its unit."""
     unit = symbol_of(line.code)
     return {code: f"{text} [{unit}]" if unit else text for code, text in texts(line.named.name).items()}
 
 
-def _calculated(export: Export) -> list[model.Property]:
+def _candidate_figures(export: Export) -> list[model.Property]:
     """Figures of the candidate; motor torques without an efficiency are described as a lower bound."""
     candidate, figures = export.candidate, export.account.figures
     values: dict[str, Value | None] = {name: getattr(candidate, name) for name in ("ratio", "stages", "utilisation")}
@@ -239,7 +239,7 @@ def _properties(export: Export) -> OPCCoreProperties:
     return properties
 
 
-def _finished(packed: bytes, metamodel: Metamodel) -> bytes:
+def _package(packed: bytes, metamodel: Metamodel) -> bytes:
     """Package in the namespace of a metamodel, without the time of its making."""
     result = BytesIO()
     with ZipFile(BytesIO(packed)) as source, ZipFile(result, "w", ZIP_DEFLATED) as target:

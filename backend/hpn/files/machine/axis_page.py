@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hpn.account.lines import known
+from hpn.account.lines import with_values
 from hpn.documents.revision import FrozenAxis
 from hpn.engine.checks import allowed
 from hpn.explain.comparison import is_same
@@ -56,7 +56,7 @@ def axis_page(
 
 def _brief(export: Export, reader: Reader) -> dict[str, Any]:
     account = export.account
-    figures = (f"{line.named.symbol} {line.text(reader)}" for line in known(account.cycle) if line.named.symbol)
+    figures = (f"{line.named.symbol} {line.text(reader)}" for line in with_values(account.cycle) if line.named.symbol)
     return inputs(export, reader) | {
         "titles": titles(export, reader),
         "verdict": verdict(export, reader),

@@ -145,7 +145,7 @@ def _cell(name: str, lines: tuple[Line, Line], reader: Reader) -> Cell:
     return name, text_of(one, reader), text_of(other, reader)
 
 
-def used(axis: FrozenAxis | None, reader: Reader) -> str:
+def utilisation_text(axis: FrozenAxis | None, reader: Reader) -> str:
     """Utilisation of an axis; blank where the document lacks the axis."""
     return reader.percent(axis.answer.utilisation, bound_of(axis)) if axis else ""
 

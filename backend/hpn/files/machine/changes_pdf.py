@@ -13,7 +13,7 @@ from hpn.files.machine.changes import (
     has_results,
     head_of,
     text_of,
-    used,
+    utilisation_text,
 )
 from hpn.files.machine.inputs import label_of
 from hpn.files.machine.words import bound_of
@@ -99,7 +99,7 @@ def _row(axis: DifferentAxis, sides: tuple[FrozenAxis | None, FrozenAxis | None]
         "more": reader.sentence(Sentence(MORE_CELLS, {"count": reader.exact(more)})) if more > 0 else "",
         "gears": [side.gear if side else None for side in (axis.side_from, axis.side_to)],
         "bars": [_bar(side, reader) for side in sides],
-        "used": [used(side, reader) for side in sides],
+        "used": [utilisation_text(side, reader) for side in sides],
         "effect": effect(axis, sides, reader),
     }
 

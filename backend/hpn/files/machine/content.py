@@ -11,7 +11,7 @@ from hpn.documents.summary import failing_inside, gear_of, has_worst_case
 from hpn.files.machine.axis_page import axis_page
 from hpn.files.machine.export import MOST_PAGES, MachineExport, Pages, exports_of
 from hpn.files.machine.inputs import label_of, line_of
-from hpn.files.machine.words import bound_of, check_of, faults_of, named, ranges, used, worst_case
+from hpn.files.machine.words import bound_of, check_of, faults_of, named, ranges, utilisation_text, worst_case
 from hpn.files.report import tables
 from hpn.files.report.checks import bar
 from hpn.files.report.content import LONGEST_HEAD, LONGEST_TITLE, block, frame, link_of, running_head, shortened
@@ -197,13 +197,13 @@ def _why(axis: FrozenAxis, reader: Reader) -> str:
     if answer.status == "open":
         return "; ".join(faults_of(axis, reader))
     if answer.status == "suitable":
-        worst = {"percent": used(axis, reader), "worst": worst_case(axis, reader)}
+        worst = {"percent": utilisation_text(axis, reader), "worst": worst_case(axis, reader)}
         return reader.sentence(
             Sentence(FAILS_INSIDE, worst | {"check": check_of(answer.worst_governing_check, reader)})
         )
     values = {
         "gear": answer.designation or "",
-        "percent": used(axis, reader),
+        "percent": utilisation_text(axis, reader),
         "check": check_of(answer.governing_check, reader),
     }
     if answer.status == "unrated":

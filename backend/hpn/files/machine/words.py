@@ -55,7 +55,7 @@ def bound_of(axis: FrozenAxis, *, in_worst_case: bool = False) -> float:
     return allowed(axis.answer.worst_governing_check if in_worst_case else axis.answer.governing_check, own)
 
 
-def used(axis: FrozenAxis, reader: Reader) -> str:
+def utilisation_text(axis: FrozenAxis, reader: Reader) -> str:
     """Utilisation of an axis."""
     return reader.percent(axis.answer.utilisation, bound_of(axis))
 

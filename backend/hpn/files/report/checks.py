@@ -8,7 +8,7 @@ from hpn.engine.checks import CHECKS
 from hpn.explain.calculation import Comparison, Step, calculation_of
 from hpn.explain.calculation.mathml import addition, compared, in_symbols, result, substituted
 from hpn.files.export import Export
-from hpn.files.words import exact_percent, measured
+from hpn.files.words import exact_percent, quantity_text
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula, sentence
 from hpn.words.terms import VERDICTS
@@ -140,14 +140,14 @@ def bounds(reading: CheckReading, reader: Reader) -> str:
         if reading.part < 1
         else ""
     )
-    return measured(reading.limit, reading.unit, reader, reading.demand) + part
+    return quantity_text(reading.limit, reading.unit, reader, reading.demand) + part
 
 
 def demand(reading: CheckReading, reader: Reader) -> str:
     """Demand of a check, with its unit."""
     if reading.has_unlimited_demand:
         return reader.text(N_("unlimited"))
-    return measured(reading.demand, reading.unit, reader, reading.bound)
+    return quantity_text(reading.demand, reading.unit, reader, reading.bound)
 
 
 def failures(account: Account, reader: Reader) -> str:

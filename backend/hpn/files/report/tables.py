@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from hpn.account.account import Account
-from hpn.account.lines import Line, LineTable, QuantityColumn, known
+from hpn.account.lines import Line, LineTable, QuantityColumn, with_values
 from hpn.words.reader import Reader
 from hpn.words.symbols import formula, sentence
 from hpn.words.wording import N_, Sentence
@@ -15,7 +15,7 @@ MOST_PHASES = 20
 
 def lines(items: Iterable[Line], reader: Reader) -> list[dict[str, Any]]:
     """Lines with a value: label, symbol, text, and the source of a published figure."""
-    return [_row(line, reader) for line in known(items)]
+    return [_row(line, reader) for line in with_values(items)]
 
 
 def _row(line: Line, reader: Reader) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from hpn.engine.tolerance_words import tolerance_of
 from hpn.engine.tried import needed_of
 from hpn.files.export import Export
 from hpn.files.report.checks import bar, failures
-from hpn.files.words import bound_of, exact_percent, title_of, used
+from hpn.files.words import bound_of, exact_percent, title_of, utilisation_text
 from hpn.words.quantities import GEAR
 from hpn.words.reader import NOTHING, Reader
 from hpn.words.symbols import sentence
@@ -95,7 +95,7 @@ def _sentences(export: Export, reader: Reader) -> Iterable[Sentence]:
         "gear": candidate.designation,
         "selected": selected or "",
         "check": title_of(export, code, reader) if code else "",
-        "percent": used(export, code, candidate.utilisation, reader),
+        "percent": utilisation_text(export, code, candidate.utilisation, reader),
     }
     if status == "suitable":
         yield _place(export)

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import xlsxwriter
 
-from hpn.account.lines import Line, LineTable, known
+from hpn.account.lines import Line, LineTable, with_values
 from hpn.files.export import LOWER_BOUND, Export, ExportTitle
 from hpn.files.words import Paper, paper
 from hpn.files.workbook import EveryDigit
@@ -150,7 +150,7 @@ class SelectionSheet(Leaf):
 
     def lines(self, title: str, lines: Iterable[Line]) -> None:
         """Write a table of the quantities that have a value; nothing where there is none."""
-        with_value, reader = known(lines), self.reader
+        with_value, reader = with_values(lines), self.reader
         if not with_value:
             return
         self.heads(title)

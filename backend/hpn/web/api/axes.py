@@ -147,7 +147,7 @@ async def _added(request: Request, id: str, numbers: Sequence[int], headers: Map
 async def _as_machine(request: Request, selection: Machine, axes: SentAxes, once: Once | None) -> Response:
     """Save a new machine that begins with a selection's axis; response with its address."""
     draft = await compute(
-        request, "batches", _begun, selection, axes, request.app.state.catalogue, request.state.api_key
+        request, "batches", _machine_draft, selection, axes, request.app.state.catalogue, request.state.api_key
     )
     id: str = await guarded(request.app.state.store.add_machine(draft, once))
     note(request, machine=id)
@@ -158,7 +158,7 @@ async def _as_machine(request: Request, selection: Machine, axes: SentAxes, once
     return JSONBytes(encode(replies.NumbersReply(numbers)), 201, headers)
 
 
-def _begun(selection: Machine, axes: SentAxes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
+def _machine_draft(selection: Machine, axes: SentAxes, catalogue: Catalogue, owner: str | None) -> MachineDraft:
     same = AxisDraft.__dataclass_fields__
     first = [AxisDraft(**{name: getattr(axis, name) for name in same}) for axis in selection.items]
     return MachineDraft(

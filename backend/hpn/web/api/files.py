@@ -244,7 +244,7 @@ def _of_gear(export: Export, designation: str) -> Export:
 
 async def answer_file(request: Request, file: File, lang: str | None, chosen: Options, make: Make) -> Response:
     """Response with a file, made beside the service; 304 if the caller has it already."""
-    reader = spoken(request, lang)
+    reader = file_reader(request, lang)
 
     pool = pool_of(request, "exports")
 
@@ -262,7 +262,7 @@ async def answer_file(request: Request, file: File, lang: str | None, chosen: Op
     return Response(content, headers=headers, media_type=file.media_type)
 
 
-def spoken(request: Request, lang: str | None) -> Reader:
+def file_reader(request: Request, lang: str | None) -> Reader:
     """Reader of a file: the requested language, else the reader's own, and the reader's units."""
     reader: Reader = request.state.reader
     return replace(reader, language=lang or reader.language, digits=DIGITS)

@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from starlette.requests import Request
 from starlette.responses import Response
 
-from hpn.files.aas.opened import opened
+from hpn.files.aas.opened import sizing_in
 from hpn.web.api import schemas
 from hpn.web.api.replies import JSONBytes, SizingReply, encode
 from hpn.web.door.access import admit
@@ -44,7 +44,7 @@ async def read_sizing(request: Request) -> Response:
     Elements are found by their semantic ids. A package made by this service returns its original application.
     """
     body = await read_body(request, PACKAGE, JSON)
-    sizing = await compute_beside(request, "files", partial(opened, body))
+    sizing = await compute_beside(request, "files", partial(sizing_in, body))
     if sizing.problem:
         raise Problem(422, sizing.problem)
     note = sizing.note.text if sizing.note else None

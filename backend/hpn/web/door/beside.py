@@ -71,7 +71,7 @@ class CallResult(msgspec.Struct, array_like=True):
     result: msgspec.Raw
 
     @classmethod
-    def received(cls, pipe: IO[bytes]) -> "CallResult":
+    def from_pipe(cls, pipe: IO[bytes]) -> "CallResult":
         """Next result from a pipe; EOFError at its end, ValueError for bytes that are not a result."""
         head = pipe.read(_LENGTH.size)
         if len(head) < _LENGTH.size:
@@ -117,7 +117,7 @@ class ProcessBeside:
             try:
                 cast(Any, process.stdin).write(call)
                 cast(Any, process.stdin).flush()
-                answer = CallResult.received(cast(Any, process.stdout))
+                answer = CallResult.from_pipe(cast(Any, process.stdout))
                 result = msgspec.msgpack.decode(answer.result, type=kind if answer.is_done else str)
             except (OSError, EOFError, ValueError):
                 self._reap(process)

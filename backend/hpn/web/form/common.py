@@ -97,7 +97,7 @@ def read(pairs: Sequence[tuple[str, str]], names: Sequence[str], reader: Reader)
             values.setdefault(path, []).append(value)
         else:
             values[path] = value
-    problems += _refused(values)
+    problems += _problems_of(values)
     decimal = entries.notation.reader.decimal
     marked = tuple(FieldProblem(each.name, None, each.message.marked(decimal)) for each in problems)
     lists = {name: tuple(texts) for name, texts in entries.lists.items()}
@@ -112,7 +112,7 @@ def read(pairs: Sequence[tuple[str, str]], names: Sequence[str], reader: Reader)
     return for_reader(form, reader), values
 
 
-def _refused(values: Values) -> list[FieldProblem]:
+def _problems_of(values: Values) -> list[FieldProblem]:
     """Problems of the values that the models refuse."""
     try:
         Common.model_validate(nested(values))

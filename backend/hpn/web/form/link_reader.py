@@ -323,7 +323,7 @@ def _validated(
         consequence = known and error["type"] in ("no_motion", "no_load")
         refused_phases = error["type"] == "too_short" and name not in CURVES and any(map(filled, rows))
         if (name, index) not in places and not consequence and not refused_phases:
-            problems.append(FieldProblem(name, index, _refused(name, error)))
+            problems.append(FieldProblem(name, index, _refusal(name, error)))
     return None, problems
 
 
@@ -336,7 +336,7 @@ def _of_missing_cell(error: Any, name: str) -> tuple[Any, str]:
     return error, name
 
 
-def _refused(name: str, error: Any) -> Sentence:
+def _refusal(name: str, error: Any) -> Sentence:
     """Text for an error of the model; names the size of a number by size, and the symbol of a tolerance."""
     *path, size = error["loc"]
     if name in BY_SIZE and tuple(path) == BY_NAME[name].path:

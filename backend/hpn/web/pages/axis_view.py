@@ -152,7 +152,7 @@ class AxisView:
         return tuple(path for name in self.without if (path := _path_of(name)))
 
     @property
-    def changed(self) -> bool:
+    def is_changed(self) -> bool:
         """True if the axis differs from its state when it was opened."""
         return self.typed != self.opened
 
@@ -186,7 +186,7 @@ class AxisView:
 
     def address(self, link: str, tail: str) -> str:
         """Address for the address bar; without a query for an axis in its stored state."""
-        as_stored = not self.changed and not self.overtaken and "&pin=" not in tail
+        as_stored = not self.is_changed and not self.overtaken and "&pin=" not in tail
         return self.place if as_stored else link + tail
 
 

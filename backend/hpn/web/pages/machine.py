@@ -121,7 +121,7 @@ async def _revision_page(request: Request, saved: Machine, label: str) -> Respon
 
 def _page(request: Request, view: MachineView, status: int, values: Mapping[str, Any]) -> Response:
     since: Since | None = values["since"]
-    view = replace(view, changed_axes=since.changed if since else frozenset())
+    view = replace(view, changed_axes=since.changed_numbers if since else frozenset())
     rows = [*view.rows, *([view.top] if view.top else [])]
     return page(
         request,

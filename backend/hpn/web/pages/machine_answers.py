@@ -24,12 +24,12 @@ COMPARED = ("selected", "governing_check", "utilisation", "suitable")
 def answers_of(machine: Machine) -> pa.Table:
     """Answers of the axes of a machine, with the columns of a listing."""
     fields = [*answer_fields(pa.string()), *NEAREST]
-    cells = [{AXIS: axis.name or str(axis.number), **_judged(answer_in(axis.answer))} for axis in machine.items]
+    cells = [{AXIS: axis.name or str(axis.number), **_cells(answer_in(axis.answer))} for axis in machine.items]
     table = pa.Table.from_pylist(cells, pa.schema(fields))
     return table.drop_columns("error")  # FAULTS has the reasons instead
 
 
-def _judged(answer: AxisAnswer) -> dict[str, Any]:
+def _cells(answer: AxisAnswer) -> dict[str, Any]:
     """Cells of an axis's answer in a listing: figures of the selected gear, else the nearest miss; faults if open."""
     if answer.status == "open":
         return {FAULTS: msgspec.json.encode(reasons(answer.faults)).decode()}
@@ -81,7 +81,7 @@ def changes(machine: Machine, catalogue: Catalogue) -> list[AxisChange]:
 
 
 def _compared(answer: AxisAnswer) -> dict[str, Any]:
-    return dict.fromkeys(COMPARED) | _judged(answer)
+    return dict.fromkeys(COMPARED) | _cells(answer)
 
 
 def _differs(saved: Mapping[str, Any], today: Mapping[str, Any]) -> bool:

@@ -74,11 +74,12 @@ def _remedies(view: MachineView, row: MachineRow, application: Application) -> t
     needed = needed_of(candidate, application, catalogue) if candidate else ()
     axis = None if view.frozen else view_of(view.machine, row.axis, Neighbours(), [], catalogue)[1]
     return tuple(
-        RowRemedy(condition_of(one), _tried(axis, tried(application, one, catalogue)) if axis else "") for one in needed
+        RowRemedy(condition_of(one), _trial_address(axis, tried(application, one, catalogue)) if axis else "")
+        for one in needed
     )
 
 
-def _tried(axis: AxisView, application: Application) -> str:
+def _trial_address(axis: AxisView, application: Application) -> str:
     """Address of an axis with another application, and the gear that is ordered for it."""
     ordered = written([pair for pair in axis.typed if pair[0] in CHOSEN])
     link = axis.link(application) + (f"&{ordered}" if ordered else "")

@@ -76,7 +76,7 @@ class Since:
         return {row.number: row for row in self.compared.rows} if self.compared else {}
 
     @cached_property
-    def changed(self) -> frozenset[int]:
+    def changed_numbers(self) -> frozenset[int]:
         """Numbers of the axes that are new, or differ from the revision."""
         if self.compared is None:
             return frozenset(axis.number for axis in self.machine.items if axis.updated > self.line.created)
@@ -84,7 +84,7 @@ class Since:
 
     def mark(self, axis: SavedAxis) -> ChangeMark | None:
         """Mark of an axis that differs from the revision, or was changed in the latest one; None for any other."""
-        if axis.number not in self.changed:
+        if axis.number not in self.changed_numbers:
             before = self.lines[1].created if len(self.lines) > 1 else None
             was_changed = before is not None and before < axis.updated <= self.lines[0].created
             return ChangeMark(self.lines[0].label, True) if was_changed else None
@@ -105,7 +105,7 @@ class Since:
             return {}
         axes = self.compared.differences.axes
         kinds = {name: sum(axis.change == name for axis in axes) for name in ("changed", "added", "removed")}
-        return kinds | {"other": len(self.compared.other), "lost": len(self.compared.lost)}
+        return kinds | {"other": len(self.compared.other), "lost": len(self.compared.without_gear)}
 
     @cached_property
     def rows(self) -> Sequence[ComparedAxis]:
@@ -115,10 +115,10 @@ class Since:
     @property
     def left_out(self) -> int:
         """Number of changed axes that are not beside the table."""
-        return len(self.changed) - len(self.rows)
+        return len(self.changed_numbers) - len(self.rows)
 
     @property
-    def removed(self) -> Sequence[str]:
+    def removed_names(self) -> Sequence[str]:
         """Names of the axes that only the revision has."""
         compared = self.compared
         return [

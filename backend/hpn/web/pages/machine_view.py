@@ -335,12 +335,12 @@ class MachineView:
         return f"{address}{'&' if '?' in address else '?'}edit=common"
 
     @property
-    def closed(self) -> str:
+    def closing_address(self) -> str:
         """Address of the same axes without the form of the common values."""
         return self.chosen.address(self.path)
 
     @property
-    def changed(self) -> str:
+    def change_address(self) -> str:
         """Address that receives changes and then shows the same axes."""
         return self.chosen.address(f"{self.path}/change")
 

@@ -18,7 +18,7 @@ from starlette.responses import HTMLResponse, RedirectResponse, Response
 from hpn.application import Application
 from hpn.application.faults import pointer, sentence_of
 from hpn.explain.drawings.cycle import CyclePicture, cycle_picture
-from hpn.files.aas.opened import OpenedSizing, is_shell, opened
+from hpn.files.aas.opened import OpenedSizing, is_shell, sizing_in
 from hpn.links.row_symbols import PHASE_BY_NAME
 from hpn.links.rows import TEXT, TOLERANCE, filled, used_columns
 from hpn.links.symbols import BY_NAME
@@ -87,7 +87,7 @@ async def paste(request: Request) -> Response:
         post = await compute(request, "pages", _post_of, await read_parts(request))
         reading, content = Reading(), post.file or post.text.encode(errors="replace")
         if is_shell(content):
-            sizing = await compute_beside(request, "files", partial(opened, content))
+            sizing = await compute_beside(request, "files", partial(sizing_in, content))
             return await compute(request, "pages", _of_sizing, request, post, sizing)
         if post.file or post.text.strip():
             reading = await read(request, post.file or post.text, BOUNDS, post.fields)

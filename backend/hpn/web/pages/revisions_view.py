@@ -19,7 +19,7 @@ from hpn.files.machine.changes import (
     head_of,
     input_cells,
 )
-from hpn.files.machine.words import bound_of, used
+from hpn.files.machine.words import bound_of, utilisation_text
 from hpn.store import Machine, RevisionLine
 from hpn.words.reader import Reader
 from hpn.words.wording import N_
@@ -59,7 +59,7 @@ class SideShown(NamedTuple):
         if axis is None:
             return None
         answer = axis.answer
-        return cls(gear_of(axis), answer.utilisation, bound_of(axis), answer.status, used(axis, reader))
+        return cls(gear_of(axis), answer.utilisation, bound_of(axis), answer.status, utilisation_text(axis, reader))
 
 
 class ComparedAxis(NamedTuple):
@@ -111,7 +111,7 @@ class Compared:
         return sum(one.pointer.startswith("/common/") for one in self.differences.common)
 
     @property
-    def changed(self) -> int:
+    def count_of_changed(self) -> int:
         """Number of axes with a differing input, or in only one of the states."""
         return sum(bool(axis.inputs) or axis.change != "changed" for axis in self.differences.axes)
 
@@ -121,7 +121,7 @@ class Compared:
         return len(self.differences.axes) + self.differences.same
 
     @cached_property
-    def lost(self) -> list[DifferentAxis]:
+    def without_gear(self) -> list[DifferentAxis]:
         """Axes that lost their gear."""
         return [axis for axis in self.differences.axes if axis.lost_its_gear]
 
@@ -165,7 +165,10 @@ class Compared:
     def largest(self) -> tuple[str | None, str | None]:
         """Largest utilisation of a suitable gear in each state, as its axis shows it; None without such a gear."""
         one, other = (
-            next((used(axis, self.reader) for axis in document.axes if axis.number == side.utilisation_axis), None)
+            next(
+                (utilisation_text(axis, self.reader) for axis in document.axes if axis.number == side.utilisation_axis),
+                None,
+            )
             for document, side in zip(self.export.documents, self.sides, strict=True)
         )
         return one, other

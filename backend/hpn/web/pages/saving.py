@@ -78,7 +78,7 @@ async def save_from_page(request: Request) -> Response:
         problem = Problem.of(error)
     except Problem as error:
         problem = error
-    return await compute(request, "pages", _refused, request, problem, save)
+    return await compute(request, "pages", _refusal_page, request, problem, save)
 
 
 def _read_form(body: bytes) -> SaveForm:
@@ -110,7 +110,7 @@ def _code(form: Form, answer: LiveResult) -> str | None:
     return answer.order.text if chosen else None
 
 
-def _refused(request: Request, problem: Problem, save: SaveForm) -> Response:
+def _refusal_page(request: Request, problem: Problem, save: SaveForm) -> Response:
     """Page with the reason, which keeps the typed inputs."""
     is_spent = problem.status_code == 410  # saving it again is then deliberate
     once_more = calculator.once_key() if is_spent else save.once
