@@ -10,11 +10,11 @@ document.addEventListener("click", (event) => {
   const button = event.target.closest('#result :is(a[data-gear], button[form="application"]:is([name="gear"], [name="pin"], [name="unpin"]))');
   if (!button || !isPlain(event)) return;
   event.preventDefault();
-  const chosen = document.getElementById("chosen-gear");
+  const field = document.getElementById("chosen-gear");
   const pinned = document.getElementById(`pinned-${button.value}`);
-  if (button.dataset.gear || button.name === "gear") chosen.value = button.dataset.gear ?? button.value;
+  if (button.dataset.gear || button.name === "gear") field.value = button.dataset.gear ?? button.value;
   else if (pinned) pinned.remove();
-  else [chosen, ...document.querySelectorAll('[id^="pinned-"]')].at(-1).after(Object.assign(chosen.cloneNode(), { id: `pinned-${button.value}`, name: "pin", value: button.value }));
+  else [field, ...document.querySelectorAll('[id^="pinned-"]')].at(-1).after(Object.assign(field.cloneNode(), { id: `pinned-${button.value}`, name: "pin", value: button.value }));
   beginEdit();
   formOf().requestSubmit();
 });

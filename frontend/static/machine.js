@@ -6,7 +6,7 @@ const isText = (element) => element.matches("textarea, select, input:not([type=c
 
 // --- Changes: counted while they are made, and given up where somebody stops them ----------------------------------------
 
-let asked = null;
+let pending = null;
 let waiting = 0;
 
 // Page that answers a form; `tell` gets every count on the way.
@@ -33,12 +33,12 @@ async function send(form, action, tell, signal) {
 const pageOf = (text) => new DOMParser().parseFromString(text, "text/html");
 
 async function sayEffect(form) {
-  asked?.abort();
-  asked = new AbortController();
+  pending?.abort();
+  pending = new AbortController();
   const effect = form.querySelector("[data-effect]");
   try {
     const tell = (count) => { if (count.done) effect.textContent = count.text; };
-    const text = await send(form, "dry", tell, asked.signal);
+    const text = await send(form, "dry", tell, pending.signal);
     const same = pageOf(text).getElementById(form.id);
     if (!same) return;
     if ("overtaken" in same.dataset) return showTheirs(text);
@@ -63,7 +63,7 @@ function showTheirs(text) {
 document.addEventListener("input", (event) => {
   const form = event.target.closest("form[data-dry]");
   if (!form || event.target.matches(".every")) return;
-  asked?.abort(); // its answer is to what was typed before
+  pending?.abort(); // its answer is to what was typed before
   form.querySelector("[data-apply]").hidden = true;
   clearTimeout(waiting);
   if (form.id === "changing" && !form.querySelector(".pick input:checked, [name=everything]:checked")) return;
@@ -72,18 +72,18 @@ document.addEventListener("input", (event) => {
 
 function show(text) {
   const page = pageOf(text);
-  const found = page.querySelector("main");
-  document.querySelector("main").replaceWith(found);
+  const main = page.querySelector("main");
+  document.querySelector("main").replaceWith(main);
   document.title = page.title;
-  keepAddress(found);
+  keepAddress(main);
   begin();
-  found.querySelector(".machine-strap:not([hidden]), .effect.refused, [role=alert]")?.scrollIntoView({ block: "nearest" });
+  main.querySelector(".machine-strap:not([hidden]), .effect.refused, [role=alert]")?.scrollIntoView({ block: "nearest" });
 }
 
 // Once the form of the common values is closed, the address doesn't open it again.
-function keepAddress(found) {
+function keepAddress(main) {
   const address = new URL(location.href);
-  if (address.searchParams.get("edit") !== "common" || found.querySelector(".every-axis.editing")) return;
+  if (address.searchParams.get("edit") !== "common" || main.querySelector(".every-axis.editing")) return;
   address.searchParams.delete("edit");
   history.replaceState(history.state, "", address);
 }
@@ -91,12 +91,12 @@ function keepAddress(found) {
 // A long change: its count, and the button that stops it. What is stopped has changed nothing, and stays in the fields.
 async function change(form, action) {
   clearTimeout(waiting);
-  asked?.abort();
+  pending?.abort();
   const stopping = new AbortController();
   const strap = document.getElementById("work");
   const stop = strap.querySelector("button");
   const [count, bar] = [strap.querySelector("[data-count]"), strap.querySelector("progress")];
-  const shown = setTimeout(() => { strap.hidden = false; }, 400);
+  const timer = setTimeout(() => { strap.hidden = false; }, 400);
   say("");
   stop.disabled = false;
   stop.onclick = () => stopping.abort();
@@ -110,7 +110,7 @@ async function change(form, action) {
   } catch (error) {
     await tellEnd(error.name === "AbortError" ? "stopped" : "broken", strap.dataset.state);
   } finally {
-    clearTimeout(shown);
+    clearTimeout(timer);
     strap.hidden = true;
   }
 }
@@ -160,9 +160,9 @@ const KEYS = {
 };
 
 function step(by) {
-  const found = marks();
-  const at = found.findIndex((mark) => mark.closest("tr").contains(document.activeElement));
-  found[Math.min(Math.max(at + by, 0), found.length - 1)]?.focus();
+  const all = marks();
+  const at = all.findIndex((mark) => mark.closest("tr").contains(document.activeElement));
+  all[Math.min(Math.max(at + by, 0), all.length - 1)]?.focus();
 }
 
 document.addEventListener("keydown", (event) => {
@@ -194,12 +194,12 @@ async function load(place) {
   const answer = await fetch(place.dataset.load);
   if (!answer.ok) return;
   const page = new DOMParser().parseFromString(await answer.text(), "text/html");
-  const found = page.getElementById(place.id);
-  if (!found) return;
+  const part = page.getElementById(place.id);
+  if (!part) return;
   // Steps that can be undone go along.
   const past = document.querySelectorAll(".undo [name=past]");
-  for (const form of found.querySelectorAll("form")) form.append(...[...past].map((field) => field.cloneNode()));
-  place.replaceWith(found);
+  for (const form of part.querySelectorAll("form")) form.append(...[...past].map((field) => field.cloneNode()));
+  place.replaceWith(part);
 }
 
 function begin() {

@@ -50,10 +50,10 @@ const unfinishedNumber = (field) => field.inputMode === "decimal" && (field.name
 const RAMPS = ["ma", "mta", "mtd", "md2"];
 const OF_PROFILE = { dwell: [["mt"]], modified_sine: [["ms"], ["mt"]], triangular: [["ms"], ["mt", "mn", "ma"]] };
 
-function needs(row, given) {
+function needs(row, textOf) {
   const profile = row.querySelector("select")?.value;
   if (profile === undefined) return [["T"], ["n"], ["t"]];
-  return [["mv"], ...(OF_PROFILE[profile] ?? [["ms"], given("mn") && !given("mt") ? RAMPS : ["mt"]])];
+  return [["mv"], ...(OF_PROFILE[profile] ?? [["ms"], textOf("mn") && !textOf("mt") ? RAMPS : ["mt"]])];
 }
 
 // The first cell that the row of the focus still lacks, where something stands in that row.
@@ -61,10 +61,10 @@ function missingCell() {
   const row = document.activeElement?.closest("#duty tbody tr");
   if (!row || row.querySelector('[aria-invalid="true"]')) return null;
   const cell = (name) => row.querySelector(`[name="${name}"]`);
-  const given = (name) => cell(name)?.value.trim();
-  const parts = needs(row, given);
-  const lacking = parts.find((names) => !names.some(given));
-  return lacking && (given("pn") || parts.some((names) => names.some(given))) ? lacking.map(cell).find(Boolean) : null;
+  const textOf = (name) => cell(name)?.value.trim();
+  const parts = needs(row, textOf);
+  const lacking = parts.find((names) => !names.some(textOf));
+  return lacking && (textOf("pn") || parts.some((names) => names.some(textOf))) ? lacking.map(cell).find(Boolean) : null;
 }
 
 // True where the request of a field waits for an input, which is named below the table and in the head of the result.
@@ -82,8 +82,8 @@ export function awaited(field) {
 
 document.addEventListener("focusout", (event) => {
   const row = event.target.closest("#duty tbody tr");
-  const left = row && !unfinishedNumber(event.target) ? !row.contains(event.relatedTarget) : event.target.form === formOf();
-  if (left && formOf().matches("[data-waiting]")) formOf().requestSubmit();
+  const hasLeft = row && !unfinishedNumber(event.target) ? !row.contains(event.relatedTarget) : event.target.form === formOf();
+  if (hasLeft && formOf().matches("[data-waiting]")) formOf().requestSubmit();
 });
 
 // A tolerance that is a number alone is percent.

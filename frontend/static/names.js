@@ -26,7 +26,7 @@
     const pixels = ([x, y]) => [((x - left) / (right - left)) * frame.width, ((high - y) / (high - low)) * frame.height];
     const values = ([x, y]) => ({ x: left + (x / frame.width) * (right - left), y: high - (y / frame.height) * (high - low) });
     const cornersOf = ({ x, y }) => x.map((radial, k) => pixels([radial, y[k]]));
-    const taken = data.filter(({ text }) => text).flatMap((points) => cornersOf(points).map((at) => ({ at, half: 14, turn: 0 })));
+    const occupied = data.filter(({ text }) => text).flatMap((points) => cornersOf(points).map((at) => ({ at, half: 14, turn: 0 })));
     const annotations = [];
     for (const curve of data.filter(({ meta }) => meta?.label)) {
       const corners = cornersOf(curve);
@@ -40,9 +40,9 @@
       const off = [SPACE * Math.sin(turn), -SPACE * Math.cos(turn)];
       const room = half / lengthOf(longest);
       const places = SHARES.filter((share) => share >= room && share <= 1 - room).map((share) => [from[0] + share * (to[0] - from[0]) + off[0], from[1] + share * (to[1] - from[1]) + off[1]]);
-      const at = places.find((place) => taken.every((other) => isApart(place, half, turn, other)));
+      const at = places.find((place) => occupied.every((other) => isApart(place, half, turn, other)));
       if (!at) continue;
-      taken.push({ at, half, turn });
+      occupied.push({ at, half, turn });
       annotations.push({ ...values(at), text: curve.meta.label, textangle: (turn * 180) / Math.PI, showarrow: false, font: { size: LETTER, color: curve.line.color, shadow: curve.meta.halo } });
     }
     for (const { x, y, text, textfont, meta } of data) {

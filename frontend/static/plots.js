@@ -1,7 +1,7 @@
 // Plots: data come when somebody unfolds one, then the library. Colours are names of the page's theme.
 
 const CONFIG = { showSendToCloud: false, plotlyServerURL: "", displaylogo: false, displayModeBar: false, showTips: false, responsive: true };
-const drawn = new Map(); // place in the page -> the data that it shows
+const figures = new Map(); // place in the page -> the data that it shows
 
 // --- Theme ------------------------------------------------------------------------------------------------------------
 
@@ -9,13 +9,13 @@ const drawn = new Map(); // place in the page -> the data that it shows
 function palette(scheme) {
   const probe = document.body.appendChild(document.createElement("i"));
   probe.style.cssText = `position:absolute;visibility:hidden;forced-color-adjust:none;${scheme ? `color-scheme:${scheme}` : ""}`;
-  const known = new Map();
+  const colours = new Map();
   const colour = (name) => {
-    if (!known.has(name)) {
+    if (!colours.has(name)) {
       probe.style.color = name;
-      known.set(name, getComputedStyle(probe).color);
+      colours.set(name, getComputedStyle(probe).color);
     }
-    return known.get(name);
+    return colours.get(name);
   };
   return { colour, done: () => probe.remove() };
 }
@@ -59,13 +59,13 @@ const printing = matchMedia("print");
 const PAPER_WIDTH = 640;
 
 function draw(plot, { force = false, paper = printing.matches } = {}) {
-  if (!window.Plotly || (!force && drawn.get(plot) === plot.dataset.figure)) return;
+  if (!window.Plotly || (!force && figures.get(plot) === plot.dataset.figure)) return;
   const { data, layout } = themed(JSON.parse(plot.dataset.figure), paper ? "light" : undefined);
   const place = placeIn(plot);
   if (paper) Object.assign(layout, { width: PAPER_WIDTH, height: 380, autosize: false });
   layout.dragmode = matchMedia("(pointer: coarse)").matches ? false : "zoom";
-  const first = !drawn.has(plot);
-  drawn.set(plot, plot.dataset.figure);
+  const first = !figures.has(plot);
+  figures.set(plot, plot.dataset.figure);
   window.Plotly.react(place, data, layout, CONFIG);
   if (first) place.on("plotly_relayout", () => follow(plot));
   follow(plot);
@@ -100,21 +100,21 @@ const watcher = new IntersectionObserver(
 );
 
 function look() {
-  for (const plot of drawn.keys()) {
+  for (const plot of figures.keys()) {
     if (plot.isConnected) continue;
     watcher.unobserve(plot);
     if (window.Plotly) window.Plotly.purge(placeIn(plot));
-    drawn.delete(plot);
+    figures.delete(plot);
   }
   for (const plot of document.querySelectorAll(".plot[data-figure]")) {
     watcher.observe(plot); // once more does no harm
-    if (!drawn.has(plot)) continue;
+    if (!figures.has(plot)) continue;
     draw(plot);
     showWhether(plot); // a morph takes the mark away
   }
 }
 
-const redraw = (options) => [...drawn.keys()].filter((plot) => plot.isConnected).forEach((plot) => draw(plot, { force: true, ...options }));
+const redraw = (options) => [...figures.keys()].filter((plot) => plot.isConnected).forEach((plot) => draw(plot, { force: true, ...options }));
 
 document.addEventListener("htmx:after:swap", look);
 new MutationObserver(look).observe(document.documentElement, { childList: true }); // history replaces the body
@@ -132,7 +132,7 @@ document.addEventListener("click", (event) => {
   const button = event.target.closest("button[data-plot]");
   const plot = button && document.getElementById(button.dataset.plot);
   if (plot && button.dataset.save) save(plot, button.dataset.save);
-  else if (plot && drawn.has(plot)) whole(plot);
+  else if (plot && figures.has(plot)) whole(plot);
 });
 
 function whole(plot) {

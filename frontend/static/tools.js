@@ -54,11 +54,11 @@ document.addEventListener("input", (event) => {
   if (form?.matches("#paste-form, #ordering-form")) form.dispatchEvent(new Event("htmx:abort"));
 });
 
-const left = { preview: null, form: null }; // the places that the focus comes back to
+const lastFocus = { preview: null, form: null }; // the places that the focus comes back to
 
 // The preview is exchanged whole, so that each choice shows what the server read; who answers keeps the place.
 document.addEventListener("htmx:before:swap", (event) => {
-  if (event.detail.ctx?.sourceElement.id === "paste-form") left.preview = document.activeElement.closest("#paste-preview :is(select, input)")?.id;
+  if (event.detail.ctx?.sourceElement.id === "paste-form") lastFocus.preview = document.activeElement.closest("#paste-preview :is(select, input)")?.id;
 });
 
 document.addEventListener("htmx:after:swap", (event) => {
@@ -67,8 +67,8 @@ document.addEventListener("htmx:after:swap", (event) => {
   if (ctx.kept) {
     document.getElementById("paste").close();
     document.querySelector("#duty input, #phases")?.focus();
-  } else if (left.preview) {
-    document.getElementById(left.preview)?.focus();
+  } else if (lastFocus.preview) {
+    document.getElementById(lastFocus.preview)?.focus();
   } else if (ctx.sourceEvent.type === "submit") {
     document.querySelector("#paste-preview :is(select.asked, .asked input, .take button)")?.focus({ preventScroll: false });
   }
@@ -86,7 +86,7 @@ function keyInForm(event) {
   if (event.altKey && name && row) return press(`${name}-${row.id.split("-")[1]}`);
   if (event.ctrlKey && event.key === "Enter") {
     const result = document.getElementById("result");
-    left.form = event.target.id;
+    lastFocus.form = event.target.id;
     result.focus();
     return true;
   }
@@ -122,7 +122,7 @@ document.addEventListener("keydown", (event) => {
   if (document.querySelector("dialog[open]")) return;
   const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
   if (plain && event.key === "?" && !isText(event.target)) document.getElementById("shortcuts")?.showModal();
-  else if (plain && event.key === "Escape" && event.target.id === "result") document.getElementById(left.form)?.focus();
+  else if (plain && event.key === "Escape" && event.target.id === "result") document.getElementById(lastFocus.form)?.focus();
   else if (asksMenu(event) && openMenu(event.target.closest("#duty tbody tr"))) event.preventDefault();
   else if (!event.shiftKey && formOf()?.contains(event.target) && keyInForm(event)) event.preventDefault();
 });
