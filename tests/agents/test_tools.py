@@ -229,7 +229,7 @@ def test_an_input_that_a_gear_lacks_is_to_be_asked_for(catalogue: Catalogue) -> 
 def test_hostile_arguments_are_refused_in_few_words(
     tool: str, arguments: Json, text: str, catalogue: Catalogue
 ) -> None:
-    given = refused(tool, catalogue, **arguments)
+    refusal = refused(tool, catalogue, **arguments)
 
-    assert text in given
-    assert len(json.dumps(given)) < 4000
+    assert text in refusal
+    assert len(json.dumps(refusal)) < 4000

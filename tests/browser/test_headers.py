@@ -23,9 +23,9 @@ def test_scripts_of_a_permitted_origin_read_the_api_and_no_page_embeds_anything(
     page.goto(server.replace("127.0.0.1", "localhost"))
     icon = page.locator('link[rel="icon"]').get_attribute("href")
 
-    found = page.evaluate(OTHERS, {"server": server, "icon": icon})
+    result = page.evaluate(OTHERS, {"server": server, "icon": icon})
 
-    assert found == [200, 200, "kept out", "kept out"]
+    assert result == [200, 200, "kept out", "kept out"]
     context.close()
 
 
@@ -33,11 +33,11 @@ def test_the_page_copies_in_spite_of_the_features_it_does_without(visitor: Visit
     page = visitor.open("/catalogue/HPN-20A-5")
     page.context.grant_permissions(["clipboard-write"])  # the headless shell has no prompt; a policy still applies
     button = page.locator("[data-copies]").first
-    done = button.get_attribute("data-done") or ""
+    outcome = button.get_attribute("data-done") or ""
 
     button.click()
 
-    expect(button).to_have_text(done)
+    expect(button).to_have_text(outcome)
     assert page.evaluate("document.featurePolicy?.allowsFeature('camera') ?? false") is False
 
 

@@ -10,10 +10,10 @@ from tests.browser.test_page import EXAMPLE
 def tops(page: Page) -> list[float]:
     """Vertical positions of the form's visible fields in px."""
     fields = page.locator("#application .field")
-    found: list[float] = fields.evaluate_all(
+    result: list[float] = fields.evaluate_all(
         "all => all.filter(each => each.checkVisibility()).map(each => each.getBoundingClientRect().top)"
     )
-    return found
+    return result
 
 
 @pytest.mark.parametrize("width", [390, 1440])

@@ -61,12 +61,12 @@ def average_torque(first: float) -> str:
 
 def test_calculation_that_is_opened_meanwhile_is_that_of_the_answer(visitor: Visitor) -> None:
     page = visitor.open(EXAMPLE)
-    shown = page.locator("#calculation")
+    element = page.locator("#calculation")
     for first in (80, 96):  # first without an earlier calculation, then with one
         with answer_held_back(page, partial(torque(page, 1).fill, str(first))):
             open_section(page, "Calculation")
-        expect(shown).to_contain_text(f"={average_torque(first)}\u202fNm≤")
-        expect(shown).not_to_contain_text("32.0210136\u202fNm≤")
+        expect(element).to_contain_text(f"={average_torque(first)}\u202fNm≤")
+        expect(element).not_to_contain_text("32.0210136\u202fNm≤")
         open_section(page, "Overview")
 
 
@@ -199,9 +199,9 @@ def test_no_link_and_no_file_is_of_the_inputs_before(visitor: Visitor, typed: st
     assert page.evaluate("window.copied") is None
     torque(page, 1).fill("41")
     expect(reason).to_be_hidden()
-    with page.expect_download(), page.expect_request("**/report.pdf") as asked:
+    with page.expect_download(), page.expect_request("**/report.pdf") as request:
         page.get_by_role("button", name="PDF").click()
-    assert torque_asked(asked.value) == "41"
+    assert torque_asked(request.value) == "41"
     assert len(downloads) == 1
 
 
@@ -209,11 +209,11 @@ def test_file_that_is_asked_for_while_an_answer_is_under_way_is_of_that_answer(v
     page = visitor.open(EXAMPLE)
     with (
         page.expect_download(),
-        page.expect_request("**/report.pdf") as asked,
+        page.expect_request("**/report.pdf") as request,
         answer_held_back(page, partial(torque(page, 1).fill, "42")),
     ):
         page.get_by_role("button", name="PDF").click()
-    assert torque_asked(asked.value) == "42"
+    assert torque_asked(request.value) == "42"
 
 
 def torque_asked(request: Request) -> str:
@@ -332,32 +332,34 @@ def test_an_input_that_an_undo_brings_back_is_not_folded_away(visitor: Visitor) 
 def test_inputs_given_before_the_scripts_are_ready_are_answered(visitor: Visitor, late: str) -> None:
     """Input before htmx takes the form, which it does in a timer after its script has run, or before the script."""
     page = visitor.open("/catalogue")
-    held: list[Route] = []
+    value_held: list[Route] = []
     if late == "htmx":
         page.add_init_script(
             "{ const start = setTimeout; setTimeout = (call, ms, ...rest) => start(call, (ms ?? 0) + 1000, ...rest) }"
         )
     else:
-        page.route(re.compile(r"/page\..*\.js$"), lambda route: held.append(route))
-    for give, asked in (
+        page.route(re.compile(r"/page\..*\.js$"), lambda route: value_held.append(route))
+    for give, case in (
         (lambda: torque(page, 1).fill("77"), "T=77&"),
         (lambda: page.locator("#f-rank").select_option(index=1), "rank="),
     ):
         with page.expect_request(re.compile(r"/page\..*\.js$")):
             page.goto(visitor.server + EXAMPLE, wait_until="domcontentloaded" if late == "htmx" else "commit")
         give()
-        while held:
-            held.pop().continue_()
-        expect(page).to_have_url(re.compile(asked))
+        while value_held:
+            value_held.pop().continue_()
+        expect(page).to_have_url(re.compile(case))
 
 
 def test_page_that_nobody_has_touched_asks_for_nothing(visitor: Visitor) -> None:
     page = visitor.open("/catalogue")
-    asked: list[str] = []
-    page.on("request", lambda request: asked.append(request.url) if "HX-Request".lower() in request.headers else None)
+    question: list[str] = []
+    page.on(
+        "request", lambda request: question.append(request.url) if "HX-Request".lower() in request.headers else None
+    )
     page.goto(visitor.server + EXAMPLE + "&Lreq=20000&c=iso&curve=std")
     page.wait_for_load_state("networkidle")
-    assert asked == []
+    assert question == []
 
 
 @pytest.mark.parametrize("count", [100, 300])

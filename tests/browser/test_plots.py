@@ -26,13 +26,13 @@ def section(page: Page) -> Any:
 
 def plot(page: Page, name: str = "Loads in the envelope") -> Any:
     """Plot, unfolded and drawn; clicked only if folded, as a second click would fold a plot that still loads."""
-    found = page.get_by_role("img", name=re.compile(name))
+    element = page.get_by_role("img", name=re.compile(name))
     zoom = page.locator("#sizes_figure" if "size" in name else "#bearing_figure")
     if zoom.get_attribute("open") is None:
         zoom.locator("summary").click()
-    found.scroll_into_view_if_needed()
-    expect(found.locator(".main-svg").first).to_be_visible()
-    return found
+    element.scroll_into_view_if_needed()
+    expect(element.locator(".main-svg").first).to_be_visible()
+    return element
 
 
 def drawn(page: Page, name: str = "Loads in the envelope") -> Any:
@@ -55,8 +55,8 @@ def once(page: Page, holds: Callable[[Any], bool]) -> Any:
 
 def curves(data: Any) -> dict[float, tuple[list[float], list[float]]]:
     """Life envelopes of a plot by load coefficient."""
-    kept = [trace for trace in data if trace["meta"]["kind"] in ("limit", "coefficient")]
-    return {trace["meta"]["load_coefficient"]: (trace["x"], trace["y"]) for trace in kept}
+    values = [trace for trace in data if trace["meta"]["kind"] in ("limit", "coefficient")]
+    return {trace["meta"]["load_coefficient"]: (trace["x"], trace["y"]) for trace in values}
 
 
 def envelopes(visitor: Visitor, driver: Playwright, size: str, **query: str | float) -> Any:
@@ -82,7 +82,7 @@ def average_speed_rpm(visitor: Visitor, driver: Playwright, link: str) -> float:
 @pytest.mark.parametrize("model", ["linear", "iso281"])
 def test_the_plots_own_data_equal_the_APIs(visitor: Visitor, playwright_driver: Playwright, model: str) -> None:
     page = visitor.open(f"{PHASES}&bm={model}&Lb=30000&Lbb=L10&gear=HPN-20A-5#bearing")
-    asked = envelopes(
+    question = envelopes(
         visitor,
         playwright_driver,
         "20A",
@@ -91,7 +91,7 @@ def test_the_plots_own_data_equal_the_APIs(visitor: Visitor, playwright_driver: 
         load_coefficient=1.2,
         model=model,
     )
-    assert curves(drawn(page)["data"]) == asked
+    assert curves(drawn(page)["data"]) == question
 
 
 @pytest.mark.parametrize(

@@ -135,27 +135,27 @@ def test_row_edited_by_key_in_a_changed_cell_takes_the_figures_along(
 ) -> None:
     page = visitor.open(EXAMPLE)
     name, typed = {"T": ("Torque", "36"), "n": ("Speed", "245"), "t": ("Duration", "0.7")}[column]
-    given = [list(row) for row in ROWS]
-    given[phase - 1]["Tnt".index(column)] = typed
+    values = [list(row) for row in ROWS]
+    values[phase - 1]["Tnt".index(column)] = typed
     cell = page.get_by_label(f"{name}, phase {phase},")
     cell.select_text()
     page.keyboard.type(typed)
     if not at_once:
         expect(page).to_have_url(re.compile(f"{column}={typed}&"))
-    wanted = [given[row] for row in order]
+    rows = [values[row] for row in order]
 
     with page.expect_response("**/?*") as answer:
         page.keyboard.press(key)
     assert "&do=" not in answer.value.url
 
     expect(page.get_by_label(f"{name}, phase {lands},")).to_be_focused()
-    expect(page).to_have_url(in_rows(wanted))
-    assert shown(page) == addressed(page) == wanted
+    expect(page).to_have_url(in_rows(rows))
+    assert shown(page) == addressed(page) == rows
     expect(page.get_by_label(f"{name}, phase {lands},")).to_be_focused()
     with page.expect_response("**/?*"):
         page.get_by_label("Pause").fill("5")
     expect(page).to_have_url(re.compile("tp=5"))
-    assert shown(page) == addressed(page) == wanted
+    assert shown(page) == addressed(page) == rows
 
 
 def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Visitor) -> None:
@@ -165,9 +165,9 @@ def test_row_moved_by_key_twice_in_quick_succession_goes_two_places(visitor: Vis
         page.keyboard.press("Alt+ArrowDown")
     expect(torque(page, 3)).to_be_focused()
     expect(torque(page, 3)).to_have_value("36")
-    wanted = [ROWS[1], ROWS[2], ["36", "250", "0.3"]]
-    expect(page).to_have_url(in_rows(wanted))
-    assert shown(page) == addressed(page) == wanted
+    expected = [ROWS[1], ROWS[2], ["36", "250", "0.3"]]
+    expect(page).to_have_url(in_rows(expected))
+    assert shown(page) == addressed(page) == expected
 
 
 def test_typing_while_the_answer_to_a_row_edit_is_under_way_keeps_both_and_the_place(visitor: Visitor) -> None:
@@ -249,9 +249,9 @@ def test_a_row_pressed_while_other_columns_are_under_way_waits_for_them(visitor:
         page.keyboard.press("Alt+ArrowDown")
         torque(page, 2).fill("33")
     expect(torque(page, 3)).to_be_focused()
-    wanted = [["33", *ROWS[1][1:]], ROWS[2], ROWS[0]]
-    expect(page).to_have_url(in_rows(wanted))
-    assert [row[:3] for row in shown(page)] == wanted
+    expected = [["33", *ROWS[1][1:]], ROWS[2], ROWS[0]]
+    expect(page).to_have_url(in_rows(expected))
+    assert [row[:3] for row in shown(page)] == expected
     expect(page.get_by_label("Radial load, phase 3,")).to_be_visible()
 
 

@@ -77,20 +77,20 @@ def test_load_of_the_cycle_beside_loads_of_every_phase_says_at_its_field_that_it
     radial = page.get_by_label("Radiallast des Zyklus" if german else "Radial load of the cycle")
     expect(radial).not_to_have_accessible_description(re.compile("Phase|phase"))
     radial.fill("900")
-    said = (
+    message = (
         "Die Radiallast des ganzen Zyklus, 900 N, zählt nicht: Jede Phase hat eine eigene."
         if german
         else "The radial load of the whole cycle, 900 N, is not used: every phase has its own."
     )
-    expect(radial).to_have_accessible_description(said)
+    expect(radial).to_have_accessible_description(message)
     expect(page.locator("#n-FR")).to_be_visible()
     second = page.locator("#FRi-1")
     second.fill("")
     expect(radial).to_have_accessible_description("")
     second.fill("310")
-    expect(radial).to_have_accessible_description(said)
+    expect(radial).to_have_accessible_description(message)
     page.reload()
-    expect(radial).to_have_accessible_description(said)
+    expect(radial).to_have_accessible_description(message)
 
 
 # --- The saved page ---------------------------------------------------------------------------------------------------
@@ -154,10 +154,10 @@ def test_verdict_says_for_which_life_the_bearing_is_judged_and_offers_the_same(
     if german:
         in_german(page)
     verdict = page.locator(".verdict")
-    said = "für die Vorgabe von 20.000 h (L50)" if german else "for the default of 20 000 h (L50)"
-    expect(verdict).to_contain_text(said)
+    message = "für die Vorgabe von 20.000 h (L50)" if german else "for the default of 20 000 h (L50)"
+    expect(verdict).to_contain_text(message)
     verdict.get_by_role(
         "link", name="Dieselbe Lebensdauer vom Lager fordern" if german else "Require the same of the bearing"
     ).click()
     expect(page).to_have_url(re.compile("&Lb=40000&Lbb=L10"))
-    expect(verdict).not_to_contain_text(said)
+    expect(verdict).not_to_contain_text(message)

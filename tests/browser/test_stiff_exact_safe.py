@@ -33,9 +33,9 @@ def test_an_axis_that_is_too_soft_is_asked_for_25_hz_and_gets_the_next_gear_with
     expect(page.get_by_text("the load’s inertia drops to").first).to_be_visible()
 
     # The same over REST, as from a PLM system.
-    asked = {"load_inertia_kgm2": 1.2, "natural_frequency_Hz": 25, "ratios": [5]}
+    question = {"load_inertia_kgm2": 1.2, "natural_frequency_Hz": 25, "ratios": [5]}
     phases = [{"torque_Nm": T, "speed_rpm": 60, "duration_s": 0.5} for T in (40, -40)]
-    body = json.dumps({"duty_cycle": {"phases": phases, "pause_s": 1}, "requirements": asked}).encode()
+    body = json.dumps({"duty_cycle": {"phases": phases, "pause_s": 1}, "requirements": question}).encode()
     request = Request(f"{visitor.server}/api/v1/select", body, {"Content-Type": "application/json"})
     with urlopen(request) as reply:
         assert json.load(reply)["selected"] == "HPN-32A-5"

@@ -12,9 +12,9 @@ from tests.property.test_tried import rejected
 
 
 def test_try_it_ends_on_the_same_gear_that_passes(visitor: Visitor, catalogue: Catalogue, soak: bool) -> None:
-    found = rejected(random.Random(19), catalogue)
+    result = rejected(random.Random(19), catalogue)
     page = visitor.open("/")
-    for application, candidate in (next(found) for _ in range(300 if soak else 3)):
+    for application, candidate in (next(result) for _ in range(300 if soak else 3)):
         page.goto(f"{visitor.server}{to_link(application)}&gear={candidate.designation}")
         ways = page.locator(".fix").get_by_role("link", name="Try it")
         for way in range(ways.count()):

@@ -195,14 +195,14 @@ def test_a_cell_that_is_blanked_leaves_no_result_as_if_it_were_valid(visitor: Vi
     for place in ("form", ".verdict"):
         expect(page.locator(f"{place} .waiting")).to_be_visible()
         expect(page.locator(f"{place} .waiting")).to_have_text("Still to enter: Speed, phase 2, in rpm")
-    shown = [
+    element = [
         page.locator(name) for name in (".tabs", "#jump strong", "#cycle svg", "#overview")
     ]  # the second is a phone's verdict
     muted = page.evaluate("getComputedStyle(document.querySelector('.hint')).color")
-    for part in (*shown, selected(page), page.locator(".largest .percent")):
+    for part in (*element, selected(page), page.locator(".largest .percent")):
         expect(part).to_have_css("color", muted)
     page.get_by_label("Speed, phase 2").fill("500")
-    for part in shown:
+    for part in element:
         expect(part).not_to_have_css("color", muted)
     expect(selected(page)).not_to_have_css("color", muted)
 

@@ -91,9 +91,9 @@ def run(*command: object, folder: Path) -> str:
     """Output of a command that has to succeed."""
     environment = {**os.environ, "PYTHONPATH": str(folder)}
     words = [str(word) for word in command]
-    done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=SECONDS)
-    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
-    return done.stdout
+    outcome = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, timeout=SECONDS)
+    assert outcome.returncode == 0, outcome.stdout[-4000:] + outcome.stderr[-4000:]
+    return outcome.stdout
 
 
 def by_python_client(document: Path, folder: Path) -> list[object]:
@@ -101,8 +101,8 @@ def by_python_client(document: Path, folder: Path) -> list[object]:
     config = folder / "generator.json"
     config.write_text(json.dumps(PYTHON_CLIENT))
     places = ("--path", document, "--config", config, "--output-path", folder / "hpn_client", "--meta", "none")
-    said = run(SCRIPTS / "openapi-python-client", "generate", *places, folder=folder)
-    assert "WARNING" not in said
+    message = run(SCRIPTS / "openapi-python-client", "generate", *places, folder=folder)
+    assert "WARNING" not in message
     return [sys.executable, JOURNEYS / "openapi_python_client.py"]
 
 
@@ -204,11 +204,11 @@ def test_a_generated_client_selects_saves_lists_renames_reads_and_deletes(
     folder.mkdir()
 
     command = generate(document, folder)
-    found = run(*command, service.url, json.dumps(CYCLE), json.dumps(TURNING), folder=folder)
+    result = run(*command, service.url, json.dumps(CYCLE), json.dumps(TURNING), folder=folder)
 
     lost = LOST.get(generate.__name__, set())
-    wanted = {name: value for name, value in EXPECTED.items() if name not in lost}
-    assert json.loads(found) == {**wanted, "figures": figures(service)}
+    by_name = {name: value for name, value in EXPECTED.items() if name not in lost}
+    assert json.loads(result) == {**by_name, "figures": figures(service)}
 
 
 def test_the_documents_name_the_overrides_that_the_python_client_is_made_with() -> None:

@@ -42,12 +42,12 @@ def main(wanted: str) -> int:
 
 
 def _try_all(running: Engine, images: Images, wanted: str) -> None:
-    with stack(running, images, ROOT) as made:
+    with stack(running, images, ROOT) as output:
         print(*images.lines(), sep="\n", flush=True)
-        built = trial.try_one("the image is built", lambda: _build(made))
-        if built and trial.try_one("the stack starts and is healthy", lambda: made.up()):
+        built = trial.try_one("the image is built", lambda: _build(output))
+        if built and trial.try_one("the stack starts and is healthy", lambda: output.up()):
             for kind in KINDS:
-                trial.run(made, kind.__name__, wanted)
+                trial.run(output, kind.__name__, wanted)
     if built:
         upgrade.run(running, images, wanted)
 

@@ -38,9 +38,9 @@ class Debian:
 
     def release_with(self, package: str, version: str) -> str:
         """Oldest release whose package begins with a version; an epoch does not count."""
-        found = _run(["apt-cache", *self._options, "madison", package])
+        result = _run(["apt-cache", *self._options, "madison", package])
         for release in RELEASES:
-            versions = re.findall(rf"\| +(?:\d+:)?(\S+) \| \S+ {release}/", found)
+            versions = re.findall(rf"\| +(?:\d+:)?(\S+) \| \S+ {release}/", result)
             if any(re.match(rf"{re.escape(version)}(\D|$)", each) for each in versions):
                 return release
         raise UnavailableError(f"no release of Debian has {package} {version}")

@@ -32,8 +32,8 @@ class Engine:
         command = ["docker", *words]
         run = subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=seconds)
         if check and run.returncode:
-            said = f"{run.stdout[-1500:]}\n{run.stderr[-1500:]}".strip()
-            raise RuntimeError(f"docker {words[0]} ended with {run.returncode}: {said}")
+            message = f"{run.stdout[-1500:]}\n{run.stderr[-1500:]}".strip()
+            raise RuntimeError(f"docker {words[0]} ended with {run.returncode}: {message}")
         return run.stdout.strip()
 
     @property

@@ -69,9 +69,9 @@ def saving_while(stack: Stack, happens: Callable[[], object]) -> str:
     assert not savers.unexpected, savers.unexpected[:3]
     with stack.client() as client:
         for id, body in savers.acknowledged.items():
-            found = client.get(f"/api/v1/selections/{id}")
-            assert found.status_code == 200, f"{body['title']} was acknowledged and answers {found.status_code}"
-            assert found.json()["title"] == body["title"]
+            response = client.get(f"/api/v1/selections/{id}")
+            assert response.status_code == 200, f"{body['title']} was acknowledged and answers {response.status_code}"
+            assert response.json()["title"] == body["title"]
         titles = _titles(stack)
     doubled = sorted(title for title in titles if titles.count(title) > 1 and title.startswith("axis "))
     assert not doubled, f"saved twice: {doubled[:5]}"

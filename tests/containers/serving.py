@@ -87,7 +87,7 @@ def _links(page: str) -> list[str]:
 @trial("every process has a user without rights, and can get none")
 def users(stack: Stack) -> str:
     """Users of the containers."""
-    found = []
+    result = []
     for service in SERVICES:
         status = stack.inside(service, "sh", "-c", "cat /proc/[0-9]*/status").stdout
         fields = [line.split() for line in status.splitlines()]
@@ -96,47 +96,47 @@ def users(stack: Stack) -> str:
         locked = {words[1] for words in fields if words and words[0] == "NoNewPrivs:"}
         assert users and "0" not in users, (service, users)
         assert rights == {"0" * 16} and locked == {"1"}, (service, rights, locked)
-        found.append(f"{service} {'/'.join(sorted(users))}")
-    return ", ".join(found)
+        result.append(f"{service} {'/'.join(sorted(users))}")
+    return ", ".join(result)
 
 
 @trial("nothing is writable but what the file says")
 def folders(stack: Stack) -> str:
     """Folders that can be written to."""
-    said = []
+    message = []
     for service in SERVICES:
         writable = set(stack.inside(service, "sh", "-c", WRITABLE_NOW).stdout.split())
         tops = {path for path in writable if not any(path.startswith(f"{other}/") for other in writable)}
         assert tops <= WRITABLE[service], (service, tops - WRITABLE[service])
         refused = stack.inside(service, "touch", "/etc/trial", "/usr/trial")
         assert refused.returncode and "Read-only" in refused.stderr, (service, refused.stderr)
-        said.append(f"{service} {' '.join(sorted(tops))}")
-    return "; ".join(said)
+        message.append(f"{service} {' '.join(sorted(tops))}")
+    return "; ".join(message)
 
 
 @trial("limits of memory and processes are the engine's, without swap")
 def limits(stack: Stack) -> str:
     """Memory and processes of the containers."""
-    said = []
+    message = []
     for service in SERVICES:
-        given = stack.inspect(service)["HostConfig"]
-        memory, swap, processes = given["Memory"], given["MemorySwap"], given["PidsLimit"]
+        inputs = stack.inspect(service)["HostConfig"]
+        memory, swap, processes = inputs["Memory"], inputs["MemorySwap"], inputs["PidsLimit"]
         assert 0 < memory < UNBOUNDED and processes, (service, memory, processes)
         assert swap == memory, f"{service} may swap: memory {memory}, with swap {swap}"
-        said.append(f"{service} {memory >> 20} MiB, {processes} processes")
-    return "; ".join(said)
+        message.append(f"{service} {memory >> 20} MiB, {processes} processes")
+    return "; ".join(message)
 
 
 @trial("a program that takes all memory or processes is refused, and the service goes on")
 def greedy(stack: Stack) -> str:
     """Ends of the greedy processes."""
     before = {service: stack.inspect(service)["State"]["StartedAt"] for service in SERVICES}
-    said = []
+    message = []
     for service in ("proxy", "db"):
         limit = stack.inspect(service)["HostConfig"]["Memory"]
         eaten = stack.inside(service, "sh", "-c", f"head -c {2 * limit} /dev/zero | tail > /dev/null; echo $?")
         assert eaten.stdout.strip() == "137", (service, eaten.stdout, eaten.stderr)
-        said.append(f"{service}: killed at {limit >> 20} MiB")
+        message.append(f"{service}: killed at {limit >> 20} MiB")
     bomb = "i=0; while [ $i -lt 600 ]; do sleep 5 & i=$((i+1)); done; echo all"
     for service in SERVICES:
         many = stack.inside(service, "sh", "-c", bomb)
@@ -146,7 +146,7 @@ def greedy(stack: Stack) -> str:
     assert stack.status() == 200
     now = {service: stack.inspect(service)["State"]["StartedAt"] for service in SERVICES}
     assert now == before, "a container was started again"
-    return "; ".join(said)
+    return "; ".join(message)
 
 
 @trial("only the proxy is published, on the address given; web and db lead nowhere else")
@@ -172,16 +172,16 @@ def networks(stack: Stack) -> str:
 def image(stack: Stack) -> str:
     """Its version."""
     search = "for each in pip pip3 uv cc gcc make; do command -v $each; done; python -c 'import pip' 2>&1"
-    found = stack.inside("web", "sh", "-c", search).stdout
-    assert "No module named 'pip'" in found, found
-    programs = [line for line in found.splitlines() if line.startswith("/")]
+    result = stack.inside("web", "sh", "-c", search).stdout
+    assert "No module named 'pip'" in result, result
+    programs = [line for line in result.splitlines() if line.startswith("/")]
     assert not programs, programs
     label = '{{index .Config.Labels "org.opencontainers.image.version"}}'
-    said = stack.engine.docker("image", "inspect", "--format", label, IMAGE)
+    message = stack.engine.docker("image", "inspect", "--format", label, IMAGE)
     with stack.client() as client:
         runs = client.get("/readyz").json()["engine_version"]
-    assert said == runs == ENGINE_VERSION, (said, runs)
-    return said
+    assert message == runs == ENGINE_VERSION, (message, runs)
+    return message
 
 
 @trial("the image alone starts read-only with any user of group 0, and beside a Kubernetes service named hpn")

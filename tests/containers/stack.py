@@ -89,8 +89,8 @@ class Stack:
 
     def inspect(self, service: str) -> dict[str, Any]:
         """State of a container, as the engine has it."""
-        found: list[dict[str, Any]] = json.loads(self.engine.docker("inspect", self.container(service)))
-        return found[0]
+        result: list[dict[str, Any]] = json.loads(self.engine.docker("inspect", self.container(service)))
+        return result[0]
 
     def logs(self, service: str, lines: int = 30) -> str:
         """The end of a container's log."""
@@ -139,9 +139,9 @@ class Stack:
         for name in ("fullchain.pem", "privkey.pem"):
             (archive / name).chmod(0o600)
             (live / name).symlink_to(archive / name)
-        made = self.run("make", "certificates", f"FROM={live}")
-        if made.returncode:
-            raise RuntimeError(f"make certificates ended with {made.returncode}: {made.stderr.strip()[-600:]}")
+        output = self.run("make", "certificates", f"FROM={live}")
+        if output.returncode:
+            raise RuntimeError(f"make certificates ended with {output.returncode}: {output.stderr.strip()[-600:]}")
 
     def down(self) -> None:
         """Remove containers, networks and volumes."""
@@ -168,15 +168,15 @@ def stack(engine: Engine, images: Images, tree: Path) -> Iterator[Stack]:
             "HPN_ALLOWED_HOSTS": "localhost",
             "COMPOSE_PROJECT_NAME": PROJECT,
         }
-        made = Stack(engine, folder, https, http, settings)
-        made.write_settings()
+        output = Stack(engine, folder, https, http, settings)
+        output.write_settings()
         (folder / "certificates").mkdir()
         certify(folder / "certificates")
         (folder / "certificates/privkey.pem").chmod(0o644)
         try:
-            yield made
+            yield output
         finally:
-            made.down()
+            output.down()
 
 
 def _copy(tree: Path, folder: Path) -> None:
@@ -204,6 +204,6 @@ def _quoted(value: str) -> str:
 
 
 def _free_port() -> int:
-    with socket.socket() as held:
-        held.bind(("127.0.0.1", 0))
-        return int(held.getsockname()[1])
+    with socket.socket() as value_held:
+        value_held.bind(("127.0.0.1", 0))
+        return int(value_held.getsockname()[1])

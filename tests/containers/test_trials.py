@@ -32,7 +32,7 @@ def test_a_trial_that_fails_is_told_and_counted(capsys: pytest.CaptureFixture[st
     trials.try_one("a full spool empties", fails)
     trials.try_one("a page answers", lambda: "200")
 
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     assert (trials.failed, trials.passed) == (["a full spool empties"], ["a page answers"])
-    assert "FAILED" in said and "the spool is still full" in said
-    assert said.rstrip().endswith("a page answers: 200")
+    assert "FAILED" in output and "the spool is still full" in output
+    assert output.rstrip().endswith("a page answers: 200")

@@ -43,13 +43,13 @@ class Trials:
         start = time.monotonic()
         more: list[str] = []
         try:
-            said, holds = body() or "", True
+            message, holds = body() or "", True
         except Exception as error:  # whatever goes wrong is this trial's failure, and the next one is tried
-            (said, *more), holds = f"{type(error).__name__}: {error}".splitlines(), False
+            (message, *more), holds = f"{type(error).__name__}: {error}".splitlines(), False
             more += [f"at {frame.filename}:{frame.lineno}" for frame in traceback.extract_tb(error.__traceback__)[-2:]]
         (self.passed if holds else self.failed).append(name)
         print(
-            f"{'ok' if holds else 'FAILED':<6} {time.monotonic() - start:6.1f} s  {name}{': ' * bool(said)}{said}",
+            f"{'ok' if holds else 'FAILED':<6} {time.monotonic() - start:6.1f} s  {name}{message and ': '}{message}",
             flush=True,
         )
         print("".join(f"         {line[:300]}\n" for line in more[-15:]), end="", flush=True)

@@ -49,16 +49,16 @@ def unreadable(stack: Stack) -> str:
     os.chown(key, 0, 0)
     stack.compose("restart", "proxy")
     end = time.monotonic() + 30
-    while "make certificates" not in (said := stack.logs("proxy", 1)):
-        assert time.monotonic() < end, said
+    while "make certificates" not in (message := stack.logs("proxy", 1)):
+        assert time.monotonic() < end, message
         time.sleep(0.5)
-    made = stack.run("make", "certificates")
-    assert made.returncode == 0, made.stderr
+    output = stack.run("make", "certificates")
+    assert output.returncode == 0, output.stderr
     end = time.monotonic() + 60
     while stack.status() != 200:
         assert time.monotonic() < end, stack.logs("proxy", 3)
         time.sleep(0.5)
-    return said
+    return message
 
 
 def _served(stack: Stack) -> str:
@@ -68,20 +68,20 @@ def _served(stack: Stack) -> str:
 @trial("a backup brings back what was deleted; refused while web runs; the database from before is kept")
 def restore(stack: Stack) -> str:
     """Names of the backup and of the database that is kept."""
-    kept = stack.save("before the backup")
+    record = stack.save("before the backup")
     name = stack.compose("run", "--rm", "backup").splitlines()[-1]
     assert name in stack.compose("run", "--rm", "backup", "ls")
     later = stack.save("after the backup")
     with stack.client() as client:
-        assert client.delete(f"/api/v1/selections/{kept}").status_code == 204
+        assert client.delete(f"/api/v1/selections/{record}").status_code == 204
     refused = stack.run("make", "restore", f"NAME={name}")
     assert refused.returncode and "web" in refused.stderr, (refused.returncode, refused.stderr[-300:])
-    assert stack.has(later) and not stack.has(kept)
+    assert stack.has(later) and not stack.has(record)
     stack.compose("stop", "web")
-    done = stack.run("make", "restore", f"NAME={name}")
-    assert done.returncode == 0, done.stderr[-800:]
+    outcome = stack.run("make", "restore", f"NAME={name}")
+    assert outcome.returncode == 0, outcome.stderr[-800:]
     stack.up()
-    assert stack.has(kept) and not stack.has(later)
+    assert stack.has(record) and not stack.has(later)
     stack.save("after the restore")
     old = [each for each in _databases(stack) if each.startswith("hpn_")]
     assert len(old) == 1, old
@@ -91,24 +91,24 @@ def restore(stack: Stack) -> str:
 @trial("a broken backup changes nothing")
 def broken(stack: Stack) -> str:
     """Output of the command."""
-    kept = stack.save("here before the broken backup")
+    record = stack.save("here before the broken backup")
     name = stack.compose("run", "--rm", "backup").splitlines()[-1]
     stack.compose(
         "run", "--rm", "backup", "sh", "-c", f"head -c 3000 {name} > broken.dump; echo nothing > nothing.dump"
     )
     before = _databases(stack)
-    said = []
+    message = []
     stack.compose("stop", "web")
     for each in ("broken.dump", "nothing.dump", "missing.dump"):
-        done = stack.run("make", "restore", f"NAME={each}")
-        assert done.returncode, f"{each} was restored"
-        said.append(
-            next(line for line in done.stderr.splitlines() if "nothing has changed" in line or "no backup" in line)
+        outcome = stack.run("make", "restore", f"NAME={each}")
+        assert outcome.returncode, f"{each} was restored"
+        message.append(
+            next(line for line in outcome.stderr.splitlines() if "nothing has changed" in line or "no backup" in line)
         )
     assert _databases(stack) == before
     stack.up()
-    assert stack.has(kept)
-    return "; ".join(said)
+    assert stack.has(record)
+    return "; ".join(message)
 
 
 def _databases(stack: Stack) -> list[str]:
@@ -220,8 +220,8 @@ def password(stack: Stack) -> str:
 
 def _alter(stack: Stack, password: str) -> None:
     """Tell the database a password, and stop the service that has another: one that is unhealthy ends `up` at once."""
-    told = "ALTER USER hpn PASSWORD '{}'".format(password.replace("'", "''"))
-    stack.compose("exec", "-T", "db", "psql", "--username", "hpn", "--command", told)
+    notice = "ALTER USER hpn PASSWORD '{}'".format(password.replace("'", "''"))
+    stack.compose("exec", "-T", "db", "psql", "--username", "hpn", "--command", notice)
     stack.compose("stop", "web")
 
 

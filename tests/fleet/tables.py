@@ -153,14 +153,14 @@ def _type(name: str) -> pa.DataType | None:
 def in_long_form(rows: Sequence[Row], *, repeated: bool = False) -> list[Row]:
     """Rows of phases, with the other inputs of an axis in its first row or in all of them; a list that is shorter than
     another ends in nulls."""
-    found = []
+    result = []
     for row in rows:
         lists = {name: row[name] for name in PHASE if row.get(name) is not None}
         others = {name: value for name, value in row.items() if name not in PHASE}
         for index in range(max(map(len, lists.values()))):
             cells = {name: values[index] for name, values in lists.items() if index < len(values)}
-            found.append((others if repeated or not index else {"axis": row["axis"]}) | cells)
-    return found
+            result.append((others if repeated or not index else {"axis": row["axis"]}) | cells)
+    return result
 
 
 def write(path: Path, rows: Sequence[Row], *, unit_rows: int = 1000) -> Path:

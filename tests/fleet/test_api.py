@@ -53,8 +53,8 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 def rows() -> list[Row]:
     """Random axes, one of them with a fault."""
     chance = random.Random(1717)
-    found = [row_of(f"axis {number}", at_random(chance, ("linear", "iso281"))) for number in range(60)]
-    return [*found[:7], spoiled(found[7], "pause_s: must be greater than or equal to 0"), *found[8:]]
+    values = [row_of(f"axis {number}", at_random(chance, ("linear", "iso281"))) for number in range(60)]
+    return [*values[:7], spoiled(values[7], "pause_s: must be greater than or equal to 0"), *values[8:]]
 
 
 def spool_of(service: Service) -> list[Path]:

@@ -82,16 +82,16 @@ def cut(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
 
 def axes(path: Path) -> list[Any]:
     """Axes of a file with their phases, and what is wrong with them, or with the file."""
-    found = list[Any]()
+    result = list[Any]()
     try:
         for batch in axes_of(open_axes(path)):
             reasons: list[Any] = [[] for _ in range(batch.rows.num_rows)]
             for fault in batch.faults:
                 reasons[fault.row].append((fault.column, fault.reason))
-            found += [(*row.values(), told) for row, told in zip(batch.rows.to_pylist(), reasons, strict=True)]
+            result += [(*row.values(), notice) for row, notice in zip(batch.rows.to_pylist(), reasons, strict=True)]
     except FleetError as error:
         return [str(error)]
-    return found
+    return result
 
 
 @pytest.fixture

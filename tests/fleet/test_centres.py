@@ -31,13 +31,13 @@ NO_CENTRE = 'must be a number, such as 21, or an object by size, such as {"20A":
 
 def axes(centres: Any) -> list[Json]:
     """Applications with a lever and these centres."""
-    found: list[Json] = []
+    result: list[Json] = []
     chance = random.Random(7)
     for centre in centres:
         application = at_random(chance)
         load = {"radial_N": 100.0, "radial_position_mm": 45.0, "shaft_centre_mm": centre}
-        found.append(application | {"output_load": application.get("output_load", {}) | load})
-    return found
+        result.append(application | {"output_load": application.get("output_load", {}) | load})
+    return result
 
 
 def in_parquet(table: pa.Table) -> bytes:

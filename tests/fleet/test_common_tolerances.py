@@ -23,12 +23,12 @@ def form(client: TestClient, machine: str, language: str = "en") -> dict[str, st
     """Fields of the form of the common values, as a browser sends them."""
     page = client.get(f"{machine}?edit=common", headers={"Accept-Language": language}).text
     part = page[page.index('id="every-axis"') :].partition("</form>")[0]
-    found = {}
+    result = {}
     for field in re.findall(r"<input[^>]*>", part):
         named = dict(re.findall(r'([a-z]+)="([^"]*)"', field))
         if "name" in named and (named["type"] != "checkbox" or " checked" in field):
-            found[named["name"]] = unescape(named.get("value", ""))
-    return found
+            result[named["name"]] = unescape(named.get("value", ""))
+    return result
 
 
 def tolerances(client: TestClient, machine: str) -> Any:
@@ -62,13 +62,13 @@ def test_tolerances_of_every_axis_are_set_on_the_page_as_rest_sets_them(client: 
 def test_a_form_that_is_sent_as_it_was_opened_changes_no_tolerance(
     client: TestClient, machine: str, language: str
 ) -> None:
-    given = {
+    inputs = {
         "torque_Nm": {"percent": 12.5},
         "phases.1.torque_Nm": {"percent": 30.0},
         "pause_s": {"minus": {"absolute": 0.0}, "plus": {"absolute": 0.25}},
         "requirements.load_inertia_kgm2": {"absolute": 0.00125},
     }
-    client.patch(f"/api/v1{machine}", json={"common": {"tolerances": given}})
+    client.patch(f"/api/v1{machine}", json={"common": {"tolerances": inputs}})
     kept_before = tolerances(client, machine)
 
     for fields in (form(client, machine, language), {**form(client, machine, language), "fw": "1"}):
@@ -133,8 +133,8 @@ def test_an_axis_shows_the_tolerances_of_its_machine_and_leaves_one_out(client: 
 
     field = next(each for each in re.findall(r"<input[^>]*>", page) if 'name="tol_T"' in each)
     assert 'value=""' in field and re.search(r'placeholder="10\s%"', unescape(field))
-    said = text_of(page[page.index("of-machine-tolerances") :].partition("</ul>")[0])
-    assert "±10 % from the machine" in said and "±4 % not asked here" in said
+    message = text_of(page[page.index("of-machine-tolerances") :].partition("</ul>")[0])
+    assert "±10 % from the machine" in message and "±4 % not asked here" in message
     switch = next(each for each in re.findall(r"<input[^>]*>", page) if 'name="ot"' in each)
     assert 'type="checkbox"' in switch and " checked" in switch and " disabled" in switch
 

@@ -117,21 +117,21 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
     answers = read(order.answers)
     assert [row["axis"] for row in answers] == [row["axis"] for row in fleet.rows]
     for row in answers:
-        wanted = fleet.wanted[row["axis"]]
-        if wanted["error"]:
-            is_short = form == "long" and wanted["error"] == UNEQUAL  # a list that is too short ends in nulls there
-            text = "is required" if is_short else wanted["error"]
-            if not (wanted["error"] == NOT_A_NUMBER and suffix != ".parquet" and suffix != ".arrow"):  # no text has NaN
+        target = fleet.wanted[row["axis"]]
+        if target["error"]:
+            is_short = form == "long" and target["error"] == UNEQUAL  # a list that is too short ends in nulls there
+            text = "is required" if is_short else target["error"]
+            if not (target["error"] == NOT_A_NUMBER and suffix != ".parquet" and suffix != ".arrow"):  # no text has NaN
                 assert text in row["error"], row["axis"]
             assert all(value is None for name, value in row.items() if name not in ("axis", "error")), row
         else:
-            assert row == wanted
-    refused = {axis for axis, wanted in fleet.wanted.items() if wanted["error"]}
+            assert row == target
+    refused = {axis for axis, wanted in fleet.wanted.items() if target["error"]}
     assert {row["axis"] for row in read(tmp_path / "rejected.parquet")} == refused
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         ({"requirements.motor.peak_torque_Nm": 5.0}, "either the motor or its figures"),
         ({"requirements.motor.designation": ""}, "must have at least 1 character"),
@@ -143,7 +143,9 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
         ({"requirements.load_inertia_kgm2": None, "requirements.motor.inertia_ratio": 5.0}, "needs a motion"),
     ],
 )
-def test_a_motor_by_name_is_refused_as_select_refuses_it(wrong: Row, said: str, fleet: Fleet, tmp_path: Path) -> None:
+def test_a_motor_by_name_is_refused_as_select_refuses_it(
+    wrong: Row, message: str, fleet: Fleet, tmp_path: Path
+) -> None:
     row = row_of("a", at_random(random.Random(3))) | {"requirements.load_inertia_kgm2": 0.01}
     row = {name: value for name, value in row.items() if not name.startswith("requirements.motor.")}
     named = row | {"requirements.motor.designation": "M 40"}
@@ -153,4 +155,4 @@ def test_a_motor_by_name_is_refused_as_select_refuses_it(wrong: Row, said: str, 
 
     sound, refused = read(order.answers)
     assert sound["error"] is None
-    assert said in refused["error"]
+    assert message in refused["error"]

@@ -121,8 +121,8 @@ def with_index(suffix: str, path: Path) -> None:
         pq.write_table(table, path)
     elif suffix == "named.parquet":
         named = table.rename_columns([*table.column_names[:-1], "row number"])
-        told = {"index_columns": ["row number"], "columns": []}
-        pq.write_table(named.replace_schema_metadata({"pandas": json.dumps(told)}), path)
+        notice = {"index_columns": ["row number"], "columns": []}
+        pq.write_table(named.replace_schema_metadata({"pandas": json.dumps(notice)}), path)
     else:
         write(path, [{"": number, **row} for number, row in enumerate(ROWS)])
 

@@ -68,10 +68,10 @@ def test_rows_and_counts_say_what_select_says(
 
     listing = sized(rows, suffix, form, tmp_path, catalogue)
 
-    shown = rows_of(listing.answers)
-    assert [row.axis for row in shown] == [row["axis"] for row in rows]
-    assert {row.axis for row in shown if row.state != "rejected"} == replies.keys()
-    for row in shown:
+    view = rows_of(listing.answers)
+    assert [row.axis for row in view] == [row["axis"] for row in rows]
+    assert {row.axis for row in view if row.state != "rejected"} == replies.keys()
+    for row in view:
         assert bool(row.reasons) == (row.state == "rejected")
         if row.state != "rejected":
             assert_same(row, replies[row.axis])
@@ -104,9 +104,9 @@ def test_listed_axes_are_the_applications_that_were_given(
 
     listing = sized(rows, ".arrow", "list", tmp_path, catalogue)
 
-    found = dict(applications_of(listing.axes))
-    assert len(found) == AXES - listing.summary.rejected
-    for axis, application in found.items():
+    result = dict(applications_of(listing.axes))
+    assert len(result) == AXES - listing.summary.rejected
+    for axis, application in result.items():
         assert to_link(application) == to_link(Application.model_validate(applications[axis]))
 
 

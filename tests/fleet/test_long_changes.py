@@ -73,11 +73,11 @@ def test_answers_in_steps_are_those_of_all_together(catalogue: Catalogue) -> Non
 
 
 def test_work_that_is_given_up_ends_at_its_next_step(catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch) -> None:
-    progress, asked = WorkProgress(), list[int]()
+    progress, case = WorkProgress(), list[int]()
 
     def questions() -> Iterator[AxisQuestion]:
         for k in range(100):
-            asked.append(k)
+            case.append(k)
             if k == 5:
                 progress.give_up()
             yield AxisQuestion(resolve(BELT, {}))
@@ -89,7 +89,7 @@ def test_work_that_is_given_up_ends_at_its_next_step(catalogue: Catalogue, monke
     finally:
         long_work._PROGRESS.reset(token)
 
-    assert len(asked) < 20 and progress.done < progress.of == 100
+    assert len(case) < 20 and progress.done < progress.of == 100
 
 
 @pytest.mark.parametrize("counted", [True, False])

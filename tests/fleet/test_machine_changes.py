@@ -49,9 +49,9 @@ def opened(client: TestClient, machine: str, language: str = "en") -> dict[str, 
 
 def kept(client: TestClient, machine: str) -> dict[str, Any]:
     """The machine over REST, without what a change counts."""
-    found: dict[str, Any] = client.get(f"/api/v1{machine}").json()
-    axes = [{n: v for n, v in axis.items() if n not in ("updated", "updated_by")} for axis in found["axes"]]
-    return {"common": found["common"], "order": found["order"], "axes": axes}
+    reply: dict[str, Any] = client.get(f"/api/v1{machine}").json()
+    axes = [{n: v for n, v in axis.items() if n not in ("updated", "updated_by")} for axis in reply["axes"]]
+    return {"common": reply["common"], "order": reply["order"], "axes": axes}
 
 
 def test_common_values_say_their_effect_before_they_are_set_as_rest_sets_them(client: TestClient, machine: str) -> None:

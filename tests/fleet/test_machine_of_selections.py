@@ -42,9 +42,9 @@ def test_each_marked_selection_becomes_an_axis_as_its_latest_revision_has_it(
     assert [axis["note"] for axis in axes] == [f"{LONG}, HB-2388", "HB-2417"]
     assert [axis["ordering_code"] for axis in axes] == [None, "HPN-20A-5-J6-BH-AF1"]
     for axis, id in zip(axes, reversed(saved), strict=True):
-        kept = client.get(f"/api/v1/selections/{id}").json()
-        assert axis["application"] == kept["application"]
-        candidates = {each["designation"]: each for each in kept["result"]["candidates"]}
+        reply = client.get(f"/api/v1/selections/{id}").json()
+        assert axis["application"] == reply["application"]
+        candidates = {each["designation"]: each for each in reply["result"]["candidates"]}
         gear = axis["answer"]["designation"]
         assert axis["answer"]["utilisation"] == pytest.approx(candidates[gear]["utilisation"], rel=1e-12)
     assert "Infeed turret" in text_of(client.get(machine).text)

@@ -47,10 +47,10 @@ def test_a_changed_axis_says_what_changed_and_what_it_did_to_its_gear(client: Te
 
     gears = [by_number[1][side]["gear"] for side in ("from", "to")]
     assert gears[0] != gears[1]
-    said = panel(page)
-    assert "1 changed · 1 new · 1 removed · 1 with another gear" in said
-    assert f"A : Torque, phase 1 21 Nm 63 Nm {gears[0]} → {gears[1]}, " in said
-    assert "D (new) " in said and "Removed: B" in said
+    message = panel(page)
+    assert "1 changed · 1 new · 1 removed · 1 with another gear" in message
+    assert f"A : Torque, phase 1 21 Nm 63 Nm {gears[0]} → {gears[1]}, " in message
+    assert "D (new) " in message and "Removed: B" in message
     assert sorted(re.findall(r'id="axis-(\d+)"', page)) == ["1", "4"]
     assert "Changed since A 2" in text_of(page)
     below = text_of(page[page.index('id="axis-1"') :].partition("since-row")[2].partition("</tr>")[0])
@@ -70,11 +70,11 @@ def test_a_common_value_marks_the_axes_whose_answers_it_changes(client: TestClie
 
 def marks(page: str) -> dict[int, tuple[str, bool]]:
     """Marks of axes by their numbers: the revision, and whether it is saved."""
-    found = dict[int, tuple[str, bool]]()
+    result = dict[int, tuple[str, bool]]()
     for number, cells in re.findall(r'id="axis-(\d+)"(.*?)</tr>', page, re.DOTALL):
         if mark := re.search(r'class="changed"( data-saved)?.*?</svg>(\w*)</span>', cells, re.DOTALL):
-            found[int(number)] = mark[2], bool(mark[1])
-    return found
+            result[int(number)] = mark[2], bool(mark[1])
+    return result
 
 
 def test_changes_are_shown_since_whichever_revision_is_chosen(client: TestClient, machine: str) -> None:
@@ -180,5 +180,5 @@ def test_the_worst_case_has_a_column_where_an_axis_has_tolerances(client: TestCl
         figure = re.search(r"([\d ]+) % \S " + whole, rows[number])
         # Whole percent, rounded away from the bound.
         assert figure and abs(float(figure[1].replace(" ", "")) / (100 * answer["worst_utilisation"]) - 1) < 0.02
-    found = [answers[number]["worst_utilisation"] for number in rows]
-    assert 'aria-sort="descending"' in page and found == sorted(found, reverse=True)
+    values = [answers[number]["worst_utilisation"] for number in rows]
+    assert 'aria-sort="descending"' in page and values == sorted(values, reverse=True)

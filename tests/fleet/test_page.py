@@ -114,9 +114,9 @@ def test_the_share_of_an_axis_is_told_from_what_its_governing_check_may_use(clie
     sized = post(client, fields={**fields_of(first.text), "size": "1"})
     page = re.sub(r"\s+", " ", client.get(sized.headers["location"]).text)
     rows = re.findall(r'<th scope="row" class="axis"> ?<a [^>]*>([^<]+)</a>(.*?)</tr>', page)
-    shown = {axis: re.findall(r'class="percent">([^<]*)|class="limit" x="([^"]*)"', row) for axis, row in rows}
+    by_name = {axis: re.findall(r'class="percent">([^<]*)|class="limit" x="([^"]*)"', row) for axis, row in rows}
     at_u, whole = ("", "53.33%"), ("", "66.67%")
-    assert list(shown.items()) == [
+    assert list(by_name.items()) == [
         ("no stop", []),
         ("too heavy", [whole, ("104 %", "")]),
         ("just over", [at_u, ("80.004 %", "")]),

@@ -124,7 +124,7 @@ def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("content", "status", "said"),
+    ("content", "status", "message"),
     [
         (b"", 422, "choose a file"),
         (b"PAR1 but not really", 422, "can’t be read as Parquet"),
@@ -134,11 +134,11 @@ def test_typed_tables_with_other_headings_are_read_with_every_digit(tmp_path: Pa
         (b"hello", 422, ""),
     ],
 )
-def test_a_file_that_can_not_be_read_says_so(client: TestClient, content: bytes, status: int, said: str) -> None:
+def test_a_file_that_can_not_be_read_says_so(client: TestClient, content: bytes, status: int, message: str) -> None:
     answer = post(client, content)
 
     assert answer.status_code == status
-    assert said in unescape(answer.text) and 'role="alert"' in answer.text
+    assert message in unescape(answer.text) and 'role="alert"' in answer.text
 
 
 def test_a_reader_who_changes_language_over_a_table_comes_back_to_the_page_of_tables(client: TestClient) -> None:

@@ -61,7 +61,7 @@ def text(folder: Path) -> str:
 def test_a_report_takes_nothing_from_outside(text: str) -> None:
     elements = Elements(text).found
 
-    addresses = [value for _, given in elements for name, value in given.items() if name in ("src", "href", "action")]
+    addresses = [value for _, inputs in elements for name, value in inputs.items() if name in ("src", "href", "action")]
     assert addresses
     assert [address for address in addresses if not (address or "").startswith("https://gears.example/?")] == []
     assert not {tag for tag, _ in elements} & {"link", "img", "iframe", "object"}
@@ -90,8 +90,8 @@ def test_a_report_in_german_has_the_reasons_in_german_too(folder: Path) -> None:
 def test_every_axis_links_to_its_selection(text: str) -> None:
     links = re.findall(r'href="(https://gears.example/\?[^"]*)"', text)
     once = dict.fromkeys(links)  # the title block names the axis that is used most again
-    found = [parse(parse_qsl(urlsplit(link.replace("&amp;", "&")).query)).application for link in once]
-    assert found == [Application.model_validate(APPLICATION), Application.model_validate(HEAVY)]
+    values = [parse(parse_qsl(urlsplit(link.replace("&amp;", "&")).query)).application for link in once]
+    assert values == [Application.model_validate(APPLICATION), Application.model_validate(HEAVY)]
 
 
 @pytest.mark.parametrize("name", ["report.pdf", "nowhere/report.html"])

@@ -33,13 +33,13 @@ def heavier(client: TestClient, place: str) -> None:
 
 def test_the_comparison_has_the_cells_and_figures_that_rest_gives(client: TestClient, machine: str) -> None:
     heavier(client, machine)
-    found = client.get(f"/api/v1{machine}/differences?from=A&to=now").json()
+    reply = client.get(f"/api/v1{machine}/differences?from=A&to=now").json()
     page = client.get(f"{machine}/revisions").text
-    shown = row(page, "Infeed belt")
+    view = row(page, "Infeed belt")
 
-    (axis,) = found["axes"]
+    (axis,) = reply["axes"]
     assert [(each["from"], each["to"]) for each in axis["inputs"]] == [(21, 42)]
-    assert "Torque, phase 1 21 Nm 42 Nm" in shown and str(axis["to"]["gear"]) in shown
+    assert "Torque, phase 1 21 Nm 42 Nm" in view and str(axis["to"]["gear"]) in view
     assert "1 cell on 1 of 4 axes" in text_of(page) and "3 axes are the same in input and result." in text_of(page)
     assert re.findall(r'id="axis-(\d+)"', client.get(f"{machine}/revisions?show=all").text)[0] == "1"
     assert len(re.findall(r'id="axis-', client.get(f"{machine}/revisions?show=all").text)) == 4

@@ -136,7 +136,7 @@ def test_the_command_sizes_a_table_and_is_quiet(many: Path, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize(
-    ("source", "workers", "said"),
+    ("source", "workers", "message"),
     [
         ("none.csv", "2", "none.csv: there is no such file"),
         ("none.txt", "2", "none.txt: the suffix must be one of .parquet, .arrow"),
@@ -144,18 +144,18 @@ def test_the_command_sizes_a_table_and_is_quiet(many: Path, tmp_path: Path) -> N
     ],
 )
 def test_an_unusable_input_ends_with_2_and_its_name(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], source: str, workers: str, said: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], source: str, workers: str, message: str
 ) -> None:
     try:
         ended_with = main(["fleet", str(tmp_path / source), str(tmp_path / "out.csv"), "--workers", workers])
     except SystemExit as end:  # of argparse
         ended_with = int(end.code or 0)
     assert ended_with == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
-    ("option", "given", "said"),
+    ("option", "value", "message"),
     [
         ("--scheduler", "tcp://here:8786", "--scheduler: belongs to --engine dask"),
         ("--lang", "de", "--lang: belongs to --report"),
@@ -164,15 +164,15 @@ def test_an_unusable_input_ends_with_2_and_its_name(
     ],
 )
 def test_an_option_that_says_nothing_without_another_is_refused(
-    many: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], option: str, given: str, said: str
+    many: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], option: str, value: str, message: str
 ) -> None:
-    assert main(["fleet", str(many), str(tmp_path / "out.csv"), option, given]) == 2
-    assert said in capsys.readouterr().err
+    assert main(["fleet", str(many), str(tmp_path / "out.csv"), option, value]) == 2
+    assert message in capsys.readouterr().err
     assert not files(tmp_path)
 
 
 @pytest.mark.parametrize(
-    ("source", "output", "said"),
+    ("source", "output", "message"),
     [
         ("secret.csv", "open/out.csv", "secret.csv: this user may not read it"),
         ("closed/in.csv", "open/out.csv", "closed/in.csv: this user may not read it"),
@@ -187,7 +187,7 @@ def test_a_file_that_permissions_forbid_ends_with_2_and_its_name(
     monkeypatch: pytest.MonkeyPatch,
     source: str,
     output: str,
-    said: str,
+    message: str,
     python: str,
 ) -> None:
     if python == "3.14":  # whose paths say that nothing is there where this user may not look
@@ -209,7 +209,7 @@ def test_a_file_that_permissions_forbid_ends_with_2_and_its_name(
         (folder / "closed").chmod(0o755)
         assert not list((folder / "open").iterdir())
 
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_a_file_that_can_not_be_written_stops_the_run(
@@ -229,24 +229,24 @@ def test_an_interrupt_leaves_nothing_and_ends_with_1(many: Path, tmp_path: Path)
     with started(many, tmp_path / "out.parquet", *SLOWLY, tmp_path / "all.csv") as run:
         wait_until_begun(run, tmp_path / "out.parquet")
         os.killpg(run.pid, signal.SIGINT)
-        said = run.communicate()[1]
+        message = run.communicate()[1]
 
-    assert (run.returncode, said) == (1, "stopped\n")
+    assert (run.returncode, message) == (1, "stopped\n")
     assert files(tmp_path) == []
 
 
 def test_an_interrupt_that_another_thread_takes_waits_until_the_workers_have_started() -> None:
     over, reached = threading.Event(), False
-    told, tells = socket.socketpair()
+    notice, tells = socket.socketpair()
     tells.setblocking(False)
     other = threading.Thread(target=over.wait)
     other.start()
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background has it ignored
     awake = signal.set_wakeup_fd(tells.fileno())
     try:
-        with told, tells, pytest.raises(KeyboardInterrupt), interrupts_held():
+        with notice, tells, pytest.raises(KeyboardInterrupt), interrupts_held():
             signal.pthread_kill(other.ident or 0, signal.SIGINT)
-            told.recv(1)  # once the other thread has taken it
+            notice.recv(1)  # once the other thread has taken it
             reached = True
     finally:
         signal.set_wakeup_fd(awake)

@@ -27,8 +27,8 @@ from tests.store.test_machines import MOST_BYTES
 def kept(client: TestClient, service: FastAPI, machine: str) -> MachineDraft:
     """The machine of the German table as it was kept."""
     assert client.portal is not None
-    found = client.portal.call(service.state.store.find_machine, machine.rpartition("/")[2])
-    return draft_of(found)
+    record = client.portal.call(service.state.store.find_machine, machine.rpartition("/")[2])
+    return draft_of(record)
 
 
 def draft_of(machine: Machine, caller: str = "") -> MachineDraft:
@@ -176,9 +176,9 @@ def test_a_caller_with_many_unsaved_machines_is_told_what_to_do(keyed: TestClien
     sized = keyed.post("/machines", files={"file": ("axes.csv", table)}, headers={"X-API-Key": "anna"})
     store, place = state_of(keyed).store, sized.headers["location"]
     assert keyed.portal is not None
-    found = keyed.portal.call(store.find_machine, place.rpartition("/")[2])
+    result = keyed.portal.call(store.find_machine, place.rpartition("/")[2])
     caller = hashlib.sha256(b"key anna").hexdigest()
-    draft = draft_of(found, caller)
+    draft = draft_of(result, caller)
     for _ in range(MOST_OF_CALLER - 1):
         keyed.portal.call(store.keep_machine, draft, MOST_BYTES)
 

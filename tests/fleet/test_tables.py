@@ -113,10 +113,10 @@ def test_a_row_that_is_cut_rejects_the_axis_that_it_may_belong_to(
 
 def test_a_row_with_too_few_or_too_many_cells_is_quoted_since_it_may_have_no_axis(size: Size, tmp_path: Path) -> None:
     size(HEAD + 'a,"[40]","[250]","[1]"\n,"[40]",5\nb,"[40]",5,1,9; 9\n', ".csv")
-    said = "the row has {} cells where the header has 4, in {}"
+    message = "the row has {} cells where the header has 4, in {}"
     assert faults(tmp_path) == [
-        (None, "axis", said.format(3, ',"[40]",5')),
-        ("b", "axis", said.format(5, 'b,"[40]",5,1,9;9')),
+        (None, "axis", message.format(3, ',"[40]",5')),
+        ("b", "axis", message.format(5, 'b,"[40]",5,1,9;9')),
     ]
 
 
@@ -144,16 +144,16 @@ def test_a_quote_that_nothing_closes_is_named_by_its_line(
     broken: str, behind: str, tmp_path: Path, catalogue: Catalogue
 ) -> None:
     (tmp_path / "in.csv").write_text(f'{HEAD}a,40,250,1\n"a",40,250,2\n{broken}{behind}')
-    said = refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
-    assert said.endswith("in.csv: line 4 has a quote that nothing closes in its cell")
+    message = refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
+    assert message.endswith("in.csv: line 4 has a quote that nothing closes in its cell")
 
 
 def test_a_quote_that_another_line_closes_is_named_where_lines_between_would_vanish(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
     (tmp_path / "in.csv").write_text(f'{HEAD}a,40,"250,1\nb,40,250,1\nc,40,250",1\n')
-    said = refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
-    assert said.endswith("in.csv: line 2 has a quote that nothing closes in its cell")
+    message = refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
+    assert message.endswith("in.csv: line 2 has a quote that nothing closes in its cell")
 
 
 def test_line_breaks_in_quotes_belong_to_a_list(size: Size) -> None:
@@ -179,7 +179,7 @@ def refusal(order: Order, catalogue: Catalogue) -> str:
 
 
 @pytest.mark.parametrize(
-    ("header", "said"),
+    ("header", "message"),
     [
         ("axis,torque_Nm,speed_rpm", "column duration_s is missing"),
         ("torque_Nm,speed_rpm", "column axis is missing"),
@@ -195,10 +195,10 @@ def refusal(order: Order, catalogue: Catalogue) -> str:
     ],
 )
 def test_columns_that_are_missing_or_unknown_are_named(
-    header: str, said: str, tmp_path: Path, catalogue: Catalogue
+    header: str, message: str, tmp_path: Path, catalogue: Catalogue
 ) -> None:
     (tmp_path / "in.csv").write_text(f"{header}\na,1,2,3,4\n")
-    assert said in refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
+    assert message in refusal(Order(tmp_path / "in.csv", tmp_path / "out.csv"), catalogue)
 
 
 @pytest.mark.parametrize("suffix", [".parquet", ".arrow", ".csv"])
@@ -223,15 +223,15 @@ def test_lines_of_json_are_refused_with_what_takes_their_place(
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
 def test_a_table_in_utf16_is_told_so(suffix: str, encoding: str, tmp_path: Path, catalogue: Catalogue) -> None:
     (tmp_path / f"in{suffix}").write_bytes("\ufeffaxis\ttorque_Nm\n".encode(encoding))
-    said = refusal(Order(tmp_path / f"in{suffix}", tmp_path / "out.csv"), catalogue)
-    assert f"in{suffix}: is UTF-16, where UTF-8 belongs" in said
+    message = refusal(Order(tmp_path / f"in{suffix}", tmp_path / "out.csv"), catalogue)
+    assert f"in{suffix}: is UTF-16, where UTF-8 belongs" in message
 
 
 def test_a_column_of_a_wrong_type_is_named(tmp_path: Path, catalogue: Catalogue) -> None:
     texts = [{**row, "speed_rpm": ["1", "2"]} for row in AXES]
     pq.write_table(pa.Table.from_pylist(texts), tmp_path / "in.parquet")
-    said = refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
-    assert "column speed_rpm is list<element: string>, where lists of numbers belong" in said
+    message = refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
+    assert "column speed_rpm is list<element: string>, where lists of numbers belong" in message
     pq.write_table(pa.Table.from_pylist([{**row, "axis": True} for row in AXES]), tmp_path / "in.parquet")
     assert "column axis is bool" in refusal(Order(tmp_path / "in.parquet", tmp_path / "out.csv"), catalogue)
 
@@ -286,16 +286,16 @@ def test_candidates_are_those_of_the_reply(size: Size, tmp_path: Path, catalogue
     size(AXES, candidates=tmp_path / "all.parquet")
     rows = read(tmp_path / "all.parquet")
     assert len(rows) == 6 * len(catalogue.gears)
-    wanted: list[Row] = []
+    expected: list[Row] = []
     for row in AXES:
         for candidate in select(Application.model_validate(COLUMNS.application_of(row)), catalogue).candidates:
             fields = msgspec.json.decode(msgspec.json.encode(candidate))
             reserve = {f"reserve.{name}": value for name, value in fields.pop("reserve").items()}
             worst = dict.fromkeys(("worst.utilisation", "worst.governing_check", "worst.status"))  # no tolerances
-            wanted.append({"axis": row["axis"], **fields, **reserve, **worst})
-            del wanted[-1]["checks"]
-            wanted[-1]["missing"] = ", ".join(fields["missing"]) or None  # a cell is one text
-    assert rows == wanted
+            expected.append({"axis": row["axis"], **fields, **reserve, **worst})
+            del expected[-1]["checks"]
+            expected[-1]["missing"] = ", ".join(fields["missing"]) or None  # a cell is one text
+    assert rows == expected
 
 
 def test_a_name_that_is_no_utf8_rejects_the_axes_that_its_row_may_belong_to(size: Size, tmp_path: Path) -> None:
@@ -318,9 +318,9 @@ def test_an_axis_whose_name_is_too_long_is_rejected_under_its_beginning(
     suffix: str, form: str, unit_rows: int, size: Size, tmp_path: Path
 ) -> None:
     rows = [AXES[0], {**AXES[1], "axis": "ü" * 1001}, AXES[2], {**AXES[3], "axis": "b" * 1000}]
-    given = write(tmp_path / f"in{suffix}", rows if form == "list" else in_long_form(rows), unit_rows=unit_rows)
+    inputs = write(tmp_path / f"in{suffix}", rows if form == "list" else in_long_form(rows), unit_rows=unit_rows)
 
-    answers = size(given.read_bytes(), suffix)
+    answers = size(inputs.read_bytes(), suffix)
 
     assert [row["axis"] for row in answers] == ["a0", "ü" * 1000, "a2", "b" * 1000]
     assert [bool(row["error"]) for row in answers] == [False, True, False, False]

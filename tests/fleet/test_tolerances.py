@@ -39,7 +39,7 @@ def test_no_other_name_is_a_column_of_a_tolerance(name: str) -> None:
 def test_axes_with_tolerances_are_answered_as_select_answers_them(catalogue: Catalogue, tmp_path: Path) -> None:
     chance = random.Random(7)
     rows: list[Row] = []
-    wanted: list[Row] = []
+    target: list[Row] = []
     while len(rows) < 40:
         document = box_at_random(chance)
         try:
@@ -48,13 +48,13 @@ def test_axes_with_tolerances_are_answered_as_select_answers_them(catalogue: Cat
             continue
         axis = f"axis {len(rows)}"
         rows.append(row_of(axis, document))
-        wanted.append(expected(axis, document, catalogue))
+        target.append(expected(axis, document, catalogue))
     rows.append(row_of("wrong", worked_example(tolerances={"speed_rpm": {"percent": 100.0}})))
 
     order = Order(write(tmp_path / "axes.parquet", rows), tmp_path / "answers.parquet")
     size_fleet(order, catalogue, here)
     answers = read(order.answers)
 
-    assert answers[:-1] == wanted
+    assert answers[:-1] == target
     assert "tolerances.speed_rpm: must leave the input on its side of 0" in answers[-1]["error"]
-    assert any(row["holds"] for row in wanted)
+    assert any(row["holds"] for row in target)

@@ -125,11 +125,11 @@ def test_decimals_are_read_by_their_digits(suffix: str, form: str, tmp_path: Pat
         path.write_bytes(in_arrow(texts, suffix, form))
     table = open_axes(path)
 
-    found = [
+    values = [
         value for axes in axes_of(table) for value in axes.rows["torque_Nm"].combine_chunks().flatten().to_pylist()
     ]
 
-    assert found == [float(text) for text in texts]
+    assert values == [float(text) for text in texts]
 
 
 def in_lines(texts: list[str], form: str) -> str:
@@ -174,8 +174,8 @@ UUIDS = [UUID("00000000-0000-0000-0000-00000000000f"), UUID("f0e1d2c3-b4a5-9687-
 def with_uuids(path: Path) -> Path:
     """A table with axes that are UUIDs, the last of which is null; its columns begin within what Arrow keeps."""
     rows = [{**AXES[0], "axis": number} for number in range(4)]
-    kept = pa.array([UUID(int=7).bytes, *(each and each.bytes for each in UUIDS)], pa.binary(16))
-    axes = pa.ExtensionArray.from_storage(pa.uuid(), kept)
+    record = pa.array([UUID(int=7).bytes, *(each and each.bytes for each in UUIDS)], pa.binary(16))
+    axes = pa.ExtensionArray.from_storage(pa.uuid(), record)
     table = pa.table({name: [row[name] for row in rows] for name in rows[0]}).set_column(0, "axis", axes).slice(1)
     if path.suffix == ".parquet":
         pq.write_table(table, path)
@@ -198,9 +198,9 @@ def test_axes_that_are_uuids_come_back_as_uuids_and_as_text_where_there_is_no_su
         size_fleet(order, catalogue, use=answers.extend)
         assert [answer["axis"] and str(answer["axis"]) for answer in read(out)] == texts
         if target in (".parquet", ".arrow"):
-            found = pq.read_table(out) if target == ".parquet" else pa.ipc.open_file(str(out)).read_all()
-            assert found["axis"].type == pa.uuid()
-            assert found["axis"].to_pylist() == UUIDS
+            result = pq.read_table(out) if target == ".parquet" else pa.ipc.open_file(str(out)).read_all()
+            assert result["axis"].type == pa.uuid()
+            assert result["axis"].to_pylist() == UUIDS
     listing = listing_of(order, iter(answers), catalogue)
     assert listing.axes["axis"].to_pylist() == texts[:2]
     assert faults(tmp_path) == [(None, "axis", "is required")]
@@ -259,7 +259,7 @@ def test_axes_of_csv_are_integers_if_every_one_is_written_as_one(tmp_path: Path,
     "kind", [pa.float32(), pa.int16(), pa.decimal128(9, 3), pa.dictionary(pa.int8(), pa.float64())]
 )
 def test_any_numeric_type_counts(kind: pa.DataType, size: Size, tmp_path: Path, catalogue: Catalogue) -> None:
-    wanted = size(AXES, ".parquet")
+    expected = size(AXES, ".parquet")
     table = pq.read_table(tmp_path / "in.parquet")
     for place, name in enumerate(table.column_names):
         if name in ("torque_Nm", "speed_rpm"):
@@ -269,7 +269,7 @@ def test_any_numeric_type_counts(kind: pa.DataType, size: Size, tmp_path: Path, 
             table = table.set_column(place, name, lists)
     pq.write_table(table, tmp_path / "other.parquet")
     size_fleet(Order(tmp_path / "other.parquet", tmp_path / "out.parquet"), catalogue)
-    assert read(tmp_path / "out.parquet") == wanted
+    assert read(tmp_path / "out.parquet") == expected
 
 
 def test_whole_floats_count_as_integers_and_nulls_as_not_given(size: Size) -> None:

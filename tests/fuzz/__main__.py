@@ -15,16 +15,16 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=0, help="seed of the first input")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--show", action="store_true", help="write the input of the first seed, and send nothing")
-    given = parser.parse_args()
-    if given.show:
-        sys.stdout.buffer.write(input_of(given.doors[0], given.first)[1])
+    inputs = parser.parse_args()
+    if inputs.show:
+        sys.stdout.buffer.write(input_of(inputs.doors[0], inputs.first)[1])
         return 0
-    found = 0
-    for door in given.doors or DOORS:
-        outcome = attack_in_parts(door, given.first, given.count, given.processes)
+    result = 0
+    for door in inputs.doors or DOORS:
+        outcome = attack_in_parts(door, inputs.first, inputs.count, inputs.processes)
         print(f"{door}: {outcome}", *outcome.findings, sep="\n", flush=True)
-        found += len(outcome.findings)
-    return min(found, 1)
+        result += len(outcome.findings)
+    return min(result, 1)
 
 
 if __name__ == "__main__":

@@ -190,8 +190,8 @@ async def _pairs(world: World, random: Random, content: bytes) -> str:
         return judged(saved, api=True)
     id = msgspec.json.decode(saved.body)["id"]
     judged(await world.call("GET", f"/api/v1/motor-lists/{id}"), api=True)
-    asked = msgspec.json.encode({"application": corpus.APPLICATIONS[-1 - random.randrange(5)], "list": id})
-    judged(await world.call("POST", path, headers=[JSON], body=asked), api=True)
+    question = msgspec.json.encode({"application": corpus.APPLICATIONS[-1 - random.randrange(5)], "list": id})
+    judged(await world.call("POST", path, headers=[JSON], body=question), api=True)
     return judged(await world.call("DELETE", f"/api/v1/motor-lists/{id}"), api=True)
 
 
@@ -222,11 +222,11 @@ async def _supplement(world: World, random: Random, content: bytes) -> str:
 async def _sizing(world: World, random: Random, content: bytes) -> str:
     """Open a package with a broken environment beside a whole course."""
     course = random.choice((b"Time,AngularVelocity\n0,0\n1,9\n", b"Time,LinearVelocity\n0,0\n1,0.5\n2,0\n"))
-    with BytesIO() as made:
-        with ZipFile(made, "w") as package:
+    with BytesIO() as output:
+        with ZipFile(output, "w") as package:
             package.writestr("aasx/data.json", content)
             package.writestr("aasx/a.csv", course)
-        body = made.getvalue()
+        body = output.getvalue()
     return judged(await world.call("POST", "/api/v1/sizing", headers=[PACKAGE], body=body), api=True)
 
 

@@ -72,14 +72,14 @@ def peak_of(beside: ProcessBeside) -> int:
     return int(status.read_text().partition("VmHWM:")[2].split()[0]) * 1024 if status.exists() else 0
 
 
-@pytest.mark.parametrize(("name", "wanted"), CASES)
-def test_a_file_is_read_or_refused_within_its_bounds(beside: ProcessBeside, name: str, wanted: TableBounds) -> None:
+@pytest.mark.parametrize(("name", "bounds"), CASES)
+def test_a_file_is_read_or_refused_within_its_bounds(beside: ProcessBeside, name: str, bounds: TableBounds) -> None:
     content = made(name)
     assert len(content) <= SMALL_BYTES or name in LARGER
 
     start = time.monotonic()
     try:
-        reading = beside.call(partial(reading_of, content, wanted), threading.Event())
+        reading = beside.call(partial(reading_of, content, bounds), threading.Event())
     except EndedError as ended:
         assert ended.is_excess, ended
         reading = Reading(table=Table(problem=Sentence("too large")))
@@ -135,13 +135,13 @@ def test_a_sheet_has_a_short_name() -> None:
 def test_long_cells_are_not_kept_in_mind() -> None:
     from hpn.tables import cells, headings
 
-    kept = (cells._entry, cells._seconds_of, cells._moment_of, headings._heading_of)
-    before = [each.cache_info().currsize for each in kept]
+    record = (cells._entry, cells._seconds_of, cells._moment_of, headings._heading_of)
+    before = [each.cache_info().currsize for each in record]
     for number in range(10):
         cell = f"{number}" * 20_000
         assert not cells.is_number(cell) and not headings.heading_of(cell).kind
         assert cells.seconds_of(cell) is None and cells.moment_of(cell) is None
-    assert before == [each.cache_info().currsize for each in kept]
+    assert before == [each.cache_info().currsize for each in record]
 
 
 @pytest.mark.parametrize(

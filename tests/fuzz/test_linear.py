@@ -190,16 +190,16 @@ def test_a_long_cell_costs_no_more_steps_than_one_of_half_its_length(place: str,
         assert max(given, default=0) <= LONGEST_GIVEN, kind
 
 
-@pytest.mark.parametrize("wanted", [PHASES, AXES], ids=["cycle", "machine"])
+@pytest.mark.parametrize("bounds", [PHASES, AXES], ids=["cycle", "machine"])
 def test_a_text_and_a_workbook_of_such_cells_cost_twice_as_much_at_most(
-    wanted: TableBounds, soak: bool, given: list[int]
+    bounds: TableBounds, soak: bool, given: list[int]
 ) -> None:
     for kind in few_kinds() if soak else [*SIGNS, *REPORTED][::5]:
         for make in (as_text, as_workbook):
             counts = []
             for length in LENGTHS:
                 content = make(written(kind, length))
-                counts.append(steps(partial(reading_of, content, wanted), given))
+                counts.append(steps(partial(reading_of, content, bounds), given))
             assert counts[1] <= MOST_GROWTH * counts[0], (kind, counts)
             assert max(given, default=0) <= LONGEST_GIVEN, kind
 
@@ -211,10 +211,10 @@ def as_text(text: str) -> str:
 
 def as_workbook(text: str) -> bytes:
     """The same as a workbook."""
-    said = "".join(
+    message = "".join(
         f'<c t="inlineStr"><is><t>{escape(cell)}</t></is></c>' for cell in as_text(text).split("\n")[0].split("\t")
     )
-    return workbook(f"<row>{said}</row><row><c><v>40</v></c><c><v>1</v></c><c><v>250</v></c><c><v>1</v></c></row>")
+    return workbook(f"<row>{message}</row><row><c><v>40</v></c><c><v>1</v></c><c><v>250</v></c><c><v>1</v></c></row>")
 
 
 def test_a_long_text_in_a_field_costs_no_more_steps(given: list[int]) -> None:

@@ -46,11 +46,11 @@ def save_by_page(client: httpx.Client) -> Iterable[str]:
     """Save by the form of the page; the names of what it refuses."""
     page = client.get("/").text
     for name, application in PAGES.items():
-        shown = client.post("/api/v1/select", json=application)
-        if shown.is_error:
+        response = client.post("/api/v1/select", json=application)
+        if response.is_error:
             yield name
             continue
-        fields = {"link": shown.json()["link"], "title": name}
+        fields = {"link": response.json()["link"], "title": name}
         fields["ref" if 'name="ref"' in page else "reference"] = "P-7"
         if 'name="once"' in page:
             fields["once"] = "0123456789abcdefABCDEF"

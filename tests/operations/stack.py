@@ -69,9 +69,9 @@ class Stack:
 
     def backup(self) -> str:
         """Name of a new backup, made by the compose file's command."""
-        made = self.run("docker", "compose", "run", "--rm", "backup", *SERVICES["backup"]["command"])
-        assert made.returncode == 0, made.stderr
-        return made.stdout.strip()
+        output = self.run("docker", "compose", "run", "--rm", "backup", *SERVICES["backup"]["command"])
+        assert output.returncode == 0, output.stderr
+        return output.stdout.strip()
 
     def restore(self, name: str) -> "subprocess.CompletedProcess[str]":
         """Outcome of `make restore`."""

@@ -27,9 +27,9 @@ def dripping(service: Service) -> socket.socket:
 
 
 def test_callers_whose_bodies_drip_shut_fleets_for_nobody(service: Service) -> None:
-    with ExitStack() as held:
+    with ExitStack() as value_held:
         for _ in range(8):
-            held.enter_context(dripping(service))
+            value_held.enter_context(dripping(service))
         answer = service.client.post(PATH, content=AXES, headers=CSV)
 
     assert (answer.status_code, answer.text.count("\n")) == (200, 2)

@@ -68,15 +68,15 @@ def test_a_backup_is_written_when_the_newest_is_too_old_and_the_newest_are_kept(
 
 
 def test_without_a_database_no_backup_is_removed_and_the_service_is_unhealthy_after_a_missed_one(stack: Stack) -> None:
-    kept = [aged(stack, f"hpn-2026010{day}T020000Z.dump", 24 * (9 - day)) for day in range(1, 6)]
+    values = [aged(stack, f"hpn-2026010{day}T020000Z.dump", 24 * (9 - day)) for day in range(1, 6)]
 
     with scheduled(stack, "schedule", PGHOST="127.0.0.1", PGPORT="9") as process:
         assert process.stderr is not None
-        said = next(line for line in process.stderr if line.startswith("no backup"))
+        message = next(line for line in process.stderr if line.startswith("no backup"))
         process.terminate()
 
-    assert said == "no backup could be written; the next try is in 1 s\n"
-    assert all(file.exists() for file in kept)
+    assert message == "no backup could be written; the next try is in 1 s\n"
+    assert all(file.exists() for file in values)
     missed = scheduled(stack, "has_recent")
     assert (missed.communicate()[1], missed.returncode) == ("no backup of the last 24 hours\n", 1)
     aged(stack, "hpn-20260109T020000Z.dump", 24.5)

@@ -65,13 +65,13 @@ def started(folder: Path) -> "subprocess.CompletedProcess[str]":
 
 
 def test_the_files_of_a_live_folder_become_readable_for_the_proxy_and_for_it_alone(folder: Path) -> None:
-    done = prepared(folder)
+    outcome = prepared(folder)
 
     if not BY_ROOT:
-        assert "sudo make certificates FROM=live" in done.stderr
+        assert "sudo make certificates FROM=live" in outcome.stderr
         return
-    assert done.returncode == 0, done.stderr
-    assert "notAfter=" in done.stdout
+    assert outcome.returncode == 0, outcome.stderr
+    assert "notAfter=" in outcome.stdout
     certificate, key = (folder / "certificates" / file for file in FILES)
     assert not certificate.is_symlink()
     assert (key.stat().st_uid, key.stat().st_mode & 0o777) == (101, 0o400)
@@ -134,10 +134,10 @@ def test_a_wrong_certificate_is_named_in_a_sentence_and_not_copied(
 ) -> None:
     spoil(folder / "live")
 
-    done = prepared(folder)
+    outcome = prepared(folder)
 
-    assert done.returncode == 1
-    (line,) = done.stderr.splitlines()
+    assert outcome.returncode == 1
+    (line,) = outcome.stderr.splitlines()
     assert words in line
     assert not (folder / "certificates").exists()
 
@@ -154,9 +154,9 @@ def test_the_proxy_says_in_a_sentence_which_file_it_can_not_read(folder: Path, f
     (certificates / file).symlink_to("../../archive/none.pem")
     leads_nowhere = started(folder)
 
-    for done in (unreadable, leads_nowhere):
-        (line,) = done.stderr.splitlines()
-        assert done.returncode == 1
+    for outcome in (unreadable, leads_nowhere):
+        (line,) = outcome.stderr.splitlines()
+        assert outcome.returncode == 1
         assert line.startswith(f"certificates/{file} is missing, a link, or not readable for user ")
         assert "make certificates" in line
 
@@ -168,8 +168,8 @@ def test_the_proxy_names_the_key_that_does_not_belong_to_the_certificate(folder:
     for each in FILES:
         (certificates / each).chmod(0o644)
 
-    done = started(folder)
+    outcome = started(folder)
 
-    assert done.returncode == 1
-    assert "certificates/privkey.pem" in done.stderr
-    assert "key values mismatch" in done.stderr
+    assert outcome.returncode == 1
+    assert "certificates/privkey.pem" in outcome.stderr
+    assert "key values mismatch" in outcome.stderr

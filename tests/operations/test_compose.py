@@ -59,10 +59,10 @@ def test_the_proxy_serves_what_is_calculated_while_nothing_can_be_saved_and_writ
 
 def test_the_proxy_is_told_all_that_its_configuration_asks_for() -> None:
     proxy = SERVICES["proxy"]
-    asked = set(re.findall(r"\$\{(PROXY_\w+)\}", (ROOT / proxy["volumes"][0].split(":")[0]).read_text()))
+    question = set(re.findall(r"\$\{(PROXY_\w+)\}", (ROOT / proxy["volumes"][0].split(":")[0]).read_text()))
     set_by_the_command = set(re.findall(r"(PROXY_\w+)=", proxy["command"][-1]))
 
-    assert asked <= set(proxy["environment"]) | set_by_the_command
+    assert question <= set(proxy["environment"]) | set_by_the_command
     assert proxy["environment"]["PROXY_NAMES"] == "${HPN_ALLOWED_HOSTS:?set it in .env}"
 
 
@@ -88,8 +88,8 @@ def test_the_manifests_for_a_cluster_are_those_of_the_image() -> None:
     (backup,) = parts["CronJob"]["spec"]["jobTemplate"]["spec"]["template"]["spec"]["containers"]
     assert SERVICES["backups"]["image"].startswith(f"{backup['image']}@")
     assert f"\n{backup['command'][-1]}() {{\n" in (ROOT / "backend/backup.sh").read_text()
-    given = {name for name in SERVICES["backups"]["environment"] if name != "BACKUP_HOURS"}
-    assert {entry["name"] for entry in backup["env"]} == given
+    values = {name for name in SERVICES["backups"]["environment"] if name != "BACKUP_HOURS"}
+    assert {entry["name"] for entry in backup["env"]} == values
 
 
 def test_the_service_waits_for_a_healthy_database_and_has_time_to_end() -> None:
@@ -101,9 +101,9 @@ def test_the_service_waits_for_a_healthy_database_and_has_time_to_end() -> None:
 
 
 def test_every_variable_that_compose_sets_is_a_setting() -> None:
-    given = {name for name in SERVICES["web"]["environment"] if name.startswith("HPN_")}
+    names = {name for name in SERVICES["web"]["environment"] if name.startswith("HPN_")}
 
-    assert given <= {f"HPN_{name.upper()}" for name in Settings.model_fields}
+    assert names <= {f"HPN_{name.upper()}" for name in Settings.model_fields}
 
 
 def test_every_named_volume_is_declared() -> None:

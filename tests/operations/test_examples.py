@@ -38,9 +38,9 @@ class Example:
         clean = {name: value for name, value in os.environ.items() if name != "HPN_KEY"}
         key = {} if self.key is None else {"HPN_KEY": self.key}
         environment = clean | key | {"no_proxy": "127.0.0.1"}
-        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
-        assert done.returncode == 0, done.stderr + done.stdout
-        return done.stdout
+        outcome = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
+        assert outcome.returncode == 0, outcome.stderr + outcome.stdout
+        return outcome.stdout
 
 
 @pytest.fixture(
@@ -69,8 +69,8 @@ def test_the_example_for_curl(example: Example, tmp_path: Path) -> None:
     gears = json.loads((tmp_path / "gears.json").read_text())["gears"]
     assert sorted((gear["quantity"], gear["axes"]) for gear in gears) == [(1, [2]), (4, [1])]
     (question,) = json.loads((tmp_path / "questions.json").read_text())["errors"]
-    made = json.loads((tmp_path / "made.json").read_text())
-    assert question["code"] == "question" and made["url"].startswith("/machines/")
+    output = json.loads((tmp_path / "made.json").read_text())
+    assert question["code"] == "question" and output["url"].startswith("/machines/")
     changed = json.loads((tmp_path / "changed.json").read_text())
     assert changed["common"]["tolerances"] and changed["axes"][0]["answer"]["holds"] in (True, False)
     assert json.loads((tmp_path / "differing.json").read_text())["machines"] == []

@@ -161,19 +161,19 @@ def admitted(service: Service, attempts: Iterable[tuple[str, str, tuple[str, ...
     """Number of attempts, and those that got further than the gate, by answer or by the log."""
     allowed = {0, 307, 308, 400, 401, 404, 405, 414, 431}
     before, count = len(service.events()), 0
-    found: list[object] = []
+    result: list[object] = []
     with closing(Wire(service.port)) as wire:
         for method, target, headers in attempts:
             count += 1
             status, body = wire.ask(method, target, *headers)
             if status not in allowed or b"Traceback" in body:
-                found.append((method, target, headers, status))
+                result.append((method, target, headers, status))
     for event in service.events()[before:]:
         if event.get("key"):  # a line of the requests before these, which had one
             continue
         if event.get("route") in GUARDED and event["status"] not in (401, 405):  # 405: of no route at all
-            found.append(event)
-    return count, found
+            result.append(event)
+    return count, result
 
 
 def test_a_key_opens_what_is_closed_without_it(guarded: Service) -> None:
@@ -191,11 +191,11 @@ def test_a_key_opens_what_is_closed_without_it(guarded: Service) -> None:
 def test_no_spelling_of_an_address_gets_past_the_gate(guarded: Service) -> None:
     attempts = ((route.method, spelled(route.path, text), ()) for route, text in itertools.product(ROUTES, SPELLINGS))
 
-    count, found = admitted(guarded, attempts)
+    count, result = admitted(guarded, attempts)
 
     assert len(SPELLINGS) >= 30
     assert count == len(ROUTES) * len(SPELLINGS)
-    assert found == []
+    assert result == []
 
 
 def test_no_header_gets_past_the_gate(guarded: Service) -> None:
@@ -203,9 +203,9 @@ def test_no_header_gets_past_the_gate(guarded: Service) -> None:
         for route, header in itertools.product(OF_EACH_GROUP, OVERRIDES):
             yield route.method, route.path, (header.format(method="GET", path="/healthz"),)
 
-    _, found = admitted(guarded, attempts())
+    _, result = admitted(guarded, attempts())
 
-    assert found == []
+    assert result == []
 
 
 def test_no_header_turns_an_open_route_into_a_guarded_one(guarded: Service) -> None:
@@ -238,7 +238,7 @@ def test_no_byte_anywhere_in_an_address_gets_past_the_gate(guarded: Service) -> 
         for (method, path, _), one, other in itertools.product(OF_EACH_GROUP, SPELLINGS, SPELLINGS):
             yield method, spelled(spelled(path, one), other), ()
 
-    count, found = admitted(guarded, attempts())
+    count, result = admitted(guarded, attempts())
 
     assert count > 80_000
-    assert found == []
+    assert result == []

@@ -126,11 +126,11 @@ def test_any_host_is_answered_where_none_is_named_and_a_wrong_one_stands_in_no_l
 
 def test_links_name_a_permitted_host(make_client: MakeClient) -> None:
     client = make_client(allowed_hosts=ALLOWED)
-    asked = {"Host": "plm.example:8443"}
+    question = {"Host": "plm.example:8443"}
 
-    canonical = client.get("/catalogue", headers=asked).text
-    report = client.get(f"/report.pdf{LINK.removeprefix('/')}", headers=asked).content
-    moved = client.get("/catalogue/", headers=asked, follow_redirects=False).headers["Location"]
+    canonical = client.get("/catalogue", headers=question).text
+    report = client.get(f"/report.pdf{LINK.removeprefix('/')}", headers=question).content
+    moved = client.get("/catalogue/", headers=question, follow_redirects=False).headers["Location"]
 
     assert '<link rel="canonical" href="http://plm.example:8443/catalogue"' in canonical
     assert moved == "http://plm.example:8443/catalogue"

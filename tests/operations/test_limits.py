@@ -40,9 +40,9 @@ def test_every_answer_says_how_many_more_requests_may_follow(make_client: MakeCl
     client = make_client(calculator_rate="3/minute")
 
     paths = ("/api/v1/catalogue", "/api/v1/catalogue/none", "/")
-    told = [client.get(path).headers["RateLimit"].split(";")[1] for path in paths]
+    values = [client.get(path).headers["RateLimit"].split(";")[1] for path in paths]
 
-    assert told == ["r=2", "r=1", "r=0"]
+    assert values == ["r=2", "r=1", "r=0"]
 
 
 def test_too_many_requests_without_a_key_are_a_429_and_no_more_a_401(make_client: MakeClient) -> None:

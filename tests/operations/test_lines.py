@@ -230,11 +230,11 @@ async def test_a_client_that_never_reads_is_cut_off(make_client: MakeClient) -> 
 @pytest.mark.anyio
 async def test_work_ends_when_the_client_leaves(make_client: MakeClient, monkeypatch: pytest.MonkeyPatch) -> None:
     client, peer = make_client(), Peer(b"{}\n" * 200_000)
-    asked = asyncio.ensure_future(peer.ask(client))
+    question = asyncio.ensure_future(peer.ask(client))
     while not peer.sent:
         await asyncio.sleep(0.01)
     peer.leave()
-    await asyncio.wait_for(asked, 20)
+    await asyncio.wait_for(question, 20)
 
     assert peer.sent[-1]["more_body"]
     assert state_of(client).disk.in_use == state_of(client).pools["batches"].in_use == 0

@@ -33,8 +33,8 @@ def test_without_its_key_a_machine_opens_read_only_and_edit_asks_for_the_key(
         assert page.status_code == 200 and "Only the key that saved this" in page.text
         assert f'href="{place}?edit=1"' in page.text
         assert not [each for each in CHANGES if each in page.text]
-    asked = client.get(f"{place}?edit=1")
-    assert asked.status_code == 401 and asked.headers["www-authenticate"].startswith("Basic")
+    response = client.get(f"{place}?edit=1")
+    assert response.status_code == 401 and response.headers["www-authenticate"].startswith("Basic")
     assert client.get(f"{place}?edit=common").status_code == 401
     assert client.get(f"{place}?edit=1", headers={"X-API-Key": keys["other"]}).status_code == 403
 

@@ -36,9 +36,9 @@ def test_run_listens_where_make_or_the_settings_say(environment: dict[str, str],
 def test_a_plain_users_path_leads_to_the_installed_proxy() -> None:
     looking = ["make", "--eval", "found:;@command -v nginx", "found"]
 
-    found = subprocess.run(looking, cwd=ROOT, env={"PATH": "/usr/bin:/bin"}, check=False)
+    result = subprocess.run(looking, cwd=ROOT, env={"PATH": "/usr/bin:/bin"}, check=False)
 
-    assert found.returncode == 0
+    assert result.returncode == 0
 
 
 PYTEST = """#!/bin/sh
@@ -71,8 +71,8 @@ def test_a_part_that_fails_keeps_no_other_from_running_and_is_named_at_the_end(
 
     assert run.returncode != 0
     assert len((tmp_path / "pytest.calls").read_text().splitlines()) == len(failed) + 1
-    said = [line for line in run.stderr.splitlines() if "failed" in line]
-    assert said == [f"make {target}: failed: {name}" for name in failed]
+    values = [line for line in run.stderr.splitlines() if "failed" in line]
+    assert values == [f"make {target}: failed: {name}" for name in failed]
     assert run.stderr.splitlines()[-1].startswith("make: ***")
 
 

@@ -16,8 +16,8 @@ def test_without_its_key_a_list_opens_read_only_and_edit_asks_for_the_key(make_c
         page = client.get(place, headers=headers)
         assert page.status_code == 200 and "M1" in page.text and f'href="{place}?edit=1"' in page.text
         assert f"{place}/save" not in page.text and f"{place}/delete" not in page.text
-    asked = client.get(f"{place}?edit=1")
-    assert asked.status_code == 401 and asked.headers["www-authenticate"].startswith("Basic")
+    response = client.get(f"{place}?edit=1")
+    assert response.status_code == 401 and response.headers["www-authenticate"].startswith("Basic")
     assert client.get(f"{place}?edit=1", headers=other).status_code == 403
 
     page = client.get(f"{place}?edit=1", headers=own)

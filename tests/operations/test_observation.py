@@ -113,9 +113,9 @@ def test_no_input_stands_in_the_log_of_a_service_that_logs_all_it_can(tmp_path: 
     assert SECRET not in service.log.read_text()
 
 
-@pytest.mark.parametrize("given", ["", "a b", "x" * 65, "ü", "a\tb"])
-def test_an_id_that_is_not_well_formed_is_replaced(given: str, make_client: MakeClient) -> None:
-    response = make_client().get("/healthz", headers={b"X-Request-ID": given.encode("latin-1")})
+@pytest.mark.parametrize("id", ["", "a b", "x" * 65, "ü", "a\tb"])
+def test_an_id_that_is_not_well_formed_is_replaced(id: str, make_client: MakeClient) -> None:
+    response = make_client().get("/healthz", headers={b"X-Request-ID": id.encode("latin-1")})
 
     assert re.fullmatch("[0-9a-f]{32}", response.headers["X-Request-ID"])
 
@@ -181,13 +181,13 @@ def test_requests_are_counted_by_route_and_status(make_client: MakeClient) -> No
     client.get("/some/where")
     client.request("BREW", "/healthz")
 
-    found = counts(client)
+    result = counts(client)
     route = "/api/v1/catalogue/{designation}"
-    assert found[f"hpn_http_requests_total GET {route} 200"] == 2
-    assert found[f"hpn_http_requests_total GET {route} 404"] == 1
-    assert found["hpn_http_requests_total GET none 404"] == 1
-    assert found["hpn_http_requests_total other /healthz 405"] == 1
-    assert found[f"hpn_http_request_duration_seconds_count GET {route}"] == 3
+    assert result[f"hpn_http_requests_total GET {route} 200"] == 2
+    assert result[f"hpn_http_requests_total GET {route} 404"] == 1
+    assert result["hpn_http_requests_total GET none 404"] == 1
+    assert result["hpn_http_requests_total other /healthz 405"] == 1
+    assert result[f"hpn_http_request_duration_seconds_count GET {route}"] == 3
 
 
 def test_selections_are_counted_by_verdict_wherever_they_are_asked_for(make_client: MakeClient) -> None:
@@ -199,10 +199,10 @@ def test_selections_are_counted_by_verdict_wherever_they_are_asked_for(make_clie
     client.post("/api/v1/selections", json={"application": good})
     client.get("/?T=40&n=250&t=1")
 
-    found = counts(client)
-    assert found["hpn_selections_total selected"] == 4
-    assert found["hpn_selections_total none"] == 2
-    assert found["hpn_selections_total refused"] == 1
+    result = counts(client)
+    assert result["hpn_selections_total selected"] == 4
+    assert result["hpn_selections_total none"] == 2
+    assert result["hpn_selections_total refused"] == 1
 
 
 def test_the_versions_that_run_are_a_metric(make_client: MakeClient, catalogue: Catalogue) -> None:
@@ -216,9 +216,9 @@ def test_operations_of_the_store_are_counted_and_its_failures(make_client: MakeC
     client.get(f"/api/v1/selections/{id}")
     client.get("/api/v1/selections")
     client.delete(f"/api/v1/selections/{id}")
-    found = counts(client)
-    done = [found[f"hpn_store_operations_total {name} ok"] for name in ("save", "find", "page", "delete")]
-    assert done == [1, 2, 1, 1]  # what is to be deleted is found first, because it has to be one's own
+    result = counts(client)
+    values = [result[f"hpn_store_operations_total {name} ok"] for name in ("save", "find", "page", "delete")]
+    assert values == [1, 2, 1, 1]  # what is to be deleted is found first, because it has to be one's own
 
     broken = make_client(database_url="postgresql://nobody@127.0.0.1:1/none", database_seconds=1)
     assert broken.get("/api/v1/selections").status_code == 503

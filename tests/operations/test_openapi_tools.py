@@ -41,11 +41,11 @@ def broken(document: Path) -> dict[str, set[str]]:
     copy.write_text(json.dumps(spoiled))
     command = [NODE, str(LINTER), "lint", str(document), str(copy), "--config", str(RULES), "--format=github-actions"]
     run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **AT_HOME}, timeout=300)
-    found: dict[str, set[str]] = {document.name: set(), copy.name: set()}
+    result: dict[str, set[str]] = {document.name: set(), copy.name: set()}
     assert "validated in" in run.stderr
     for rule, file in re.findall(r"^::\w+ title=([\w-]+),file=([^,]+)", run.stdout, re.M):
-        found[Path(file).name].add(rule)
-    return found
+        result[Path(file).name].add(rule)
+    return result
 
 
 def test_the_linter_finds_nothing(broken: dict[str, set[str]]) -> None:

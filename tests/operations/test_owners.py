@@ -54,9 +54,9 @@ def test_a_key_deletes_its_own_and_admin_deletes_any(
 
 
 def test_without_keys_everybody_deletes_what_anybody_has_saved(make_client: MakeClient) -> None:
-    kept = saved(make_client(api_keys=PAIRS), "plm")
+    record = saved(make_client(api_keys=PAIRS), "plm")
 
-    assert make_client().delete(kept).status_code == 204
+    assert make_client().delete(record).status_code == 204
 
 
 def test_a_form_that_a_browser_sends_with_a_key_is_that_keys_own(make_client: MakeClient) -> None:

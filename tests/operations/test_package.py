@@ -83,18 +83,18 @@ def test_a_wheel_of_the_checkout_is_that_of_the_sdist(wheel: Path, tmp_path: Pat
 
 def test_a_wheel_holds_catalogue_templates_and_assets_as_they_stand_in_the_checkout(wheel: Path) -> None:
     packed = contents(wheel)
-    found = {name.removeprefix("hpn/data/"): content for name, content in packed.items() if "/data/" in name}
+    by_name = {name.removeprefix("hpn/data/"): content for name, content in packed.items() if "/data/" in name}
 
-    assert found == {name: (ROOT / name).read_bytes() for name in found}
-    assert {path.relative_to(ROOT).as_posix() for path in (ROOT / "catalogue").glob("*.csv")} <= found.keys()
-    assert {path.relative_to(ROOT).as_posix() for path in (ROOT / "frontend/templates").iterdir()} <= found.keys()
+    assert by_name == {name: (ROOT / name).read_bytes() for name in by_name}
+    assert {path.relative_to(ROOT).as_posix() for path in (ROOT / "catalogue").glob("*.csv")} <= by_name.keys()
+    assert {path.relative_to(ROOT).as_posix() for path in (ROOT / "frontend/templates").iterdir()} <= by_name.keys()
     for name in json.loads((ROOT / "frontend/dist/manifest.json").read_text()).values():
-        assert [form for form in ("", ".br", ".gz") if f"frontend/dist/{name}{form}" in found] in ([""], [".br"])
-    fonts = {name.removeprefix("frontend/dist/paper/") for name in found if name.startswith("frontend/dist/paper/")}
+        assert [form for form in ("", ".br", ".gz") if f"frontend/dist/{name}{form}" in by_name] in ([""], [".br"])
+    fonts = {name.removeprefix("frontend/dist/paper/") for name in by_name if name.startswith("frontend/dist/paper/")}
     scripts = {name.removesuffix(".ttf") for name in fonts if name.endswith(".ttf")}
     assert {"HPNSans", "HPNSans-Bold", "HPNSans-Italic", "NotoSans", "NotoSansSC", "NotoSansKR", "NotoEmoji"} <= scripts
     assert fonts == {f"{script}{ending}" for script in scripts for ending in (".ttf", ".ttf.OFL.txt")}
-    assert not [name for name in found if "dist/templates" in name]
+    assert not [name for name in by_name if "dist/templates" in name]
     assert "hpn/py.typed" in packed
 
 

@@ -84,9 +84,9 @@ def curl(proxy: Proxy, path: str, *options: str, body: bytes = b"") -> bytes:
 
 def test_the_service_learns_the_callers_address_host_and_id(proxy: Proxy, service: Service) -> None:
     head = b"GET /catalogue HTTP/1.1\r\nHost: localhost:%d\r\n"
-    said = b"X-Forwarded-For: 192.0.2.7\r\nX-Request-ID: through-nginx\r\nConnection: close\r\n\r\n"
+    message = b"X-Forwarded-For: 192.0.2.7\r\nX-Request-ID: through-nginx\r\nConnection: close\r\n\r\n"
     with proxy.connect(source="127.0.0.2") as connection:
-        connection.sendall(head % proxy.https + said)
+        connection.sendall(head % proxy.https + message)
         answer = b"".join(iter(lambda: connection.recv(65536), b""))
 
     assert b"x-request-id: through-nginx" in answer.lower()
@@ -217,11 +217,11 @@ def test_more_than_the_service_does_in_time_is_refused_at_once_and_what_a_page_n
     style = re.findall(r'href="(/static/[^"]+)"', client.get("/").text)[0]
     os.kill(service.process.pid, signal.SIGSTOP)
     try:
-        with ExitStack() as held:
+        with ExitStack() as value_held:
             for number in range(32):
-                connection = held.enter_context(proxy.connect(source=f"127.0.0.{2 + number % 4}"))
+                connection = value_held.enter_context(proxy.connect(source=f"127.0.0.{2 + number % 4}"))
                 connection.sendall(asked_for("/catalogue"))
-            refused, *others = (held.enter_context(proxy.connect(source="127.0.0.6")) for _ in range(3))
+            refused, *others = (value_held.enter_context(proxy.connect(source="127.0.0.6")) for _ in range(3))
             refused.sendall(asked_for("/catalogue"))
             answer = refused.recv(5000)
             for connection, path in zip(others, (style, "/healthz"), strict=True):
@@ -237,17 +237,17 @@ def test_more_than_the_service_does_in_time_is_refused_at_once_and_what_a_page_n
 
 
 def test_files_for_a_crowd_on_one_address_are_made_a_few_at_a_time_and_others_come_between(proxy: Proxy) -> None:
-    asked = asked_for("/report.pdf?T=40&n=250&t=1")
+    question = asked_for("/report.pdf?T=40&n=250&t=1")
     with ThreadPoolExecutor(31) as crowd:
-        made = [crowd.submit(status_from, proxy, "127.0.0.2", asked) for _ in range(30)]
+        values = [crowd.submit(status_from, proxy, "127.0.0.2", question) for _ in range(30)]
         time.sleep(0.5)
-        before = sum(file.done() and file.result() == 200 for file in made)
-        assert status_from(proxy, "127.0.0.3", asked) == 200
-        meanwhile = sum(file.done() and file.result() == 200 for file in made) - before
-        found = Counter(file.result() for file in made)
+        before = sum(file.done() and file.result() == 200 for file in values)
+        assert status_from(proxy, "127.0.0.3", question) == 200
+        meanwhile = sum(file.done() and file.result() == 200 for file in values) - before
+        results = Counter(file.result() for file in values)
 
-    assert set(found) <= {200, 429}
-    assert found[200] >= 4
+    assert set(results) <= {200, 429}
+    assert results[200] >= 4
     assert meanwhile <= 8  # four that were there before; without, all thirty
 
 
@@ -286,8 +286,8 @@ def test_load_balancers_ask_for_health_by_any_name(path: str, client: httpx.Clie
 def test_behind_a_load_balancer_callers_are_who_it_says_and_nobody_else_is_believed(service: Service) -> None:
     with proxied(service.port, balancers="127.0.0.2, 127.0.0.9") as proxy:
         for source, id in (("127.0.0.2", "by-balancer"), ("127.0.0.3", "by-stranger")):
-            said = f"X-Forwarded-For: 192.0.2.7\r\nX-Request-ID: {id}\r\n\r\n".encode()
-            assert status_from(proxy, source, b"GET /catalogue HTTP/1.1\r\nHost: localhost\r\n" + said) == 200
+            message = f"X-Forwarded-For: 192.0.2.7\r\nX-Request-ID: {id}\r\n\r\n".encode()
+            assert status_from(proxy, source, b"GET /catalogue HTTP/1.1\r\nHost: localhost\r\n" + message) == 200
 
     assert service.event(request_id="by-balancer")["client"] == "192.0.2.7"
     assert service.event(request_id="by-stranger")["client"] == "127.0.0.3"
@@ -300,9 +300,9 @@ def test_metrics_are_nowhere_but_for_the_addresses_that_are_named(service: Servi
     assert closed.json()["type"] == "/problems/not-found"
     assert client.get("/metrics", headers={"X-Forwarded-For": "127.0.0.3"}).status_code == 404
     with proxied(service.port, readers="127.0.0.3, 10.0.0.0/8", balancers="127.0.0.9") as proxy:
-        asked = asked_for("/metrics")
-        assert status_from(proxy, "127.0.0.3", asked) == 200
-        assert status_from(proxy, "127.0.0.2", asked) == 404
+        question = asked_for("/metrics")
+        assert status_from(proxy, "127.0.0.3", question) == 200
+        assert status_from(proxy, "127.0.0.2", question) == 404
         behind = b"GET /metrics HTTP/1.1\r\nHost: localhost\r\nX-Forwarded-For: %s\r\n\r\n"
         assert status_from(proxy, "127.0.0.9", behind % b"10.1.2.3") == 200
         assert status_from(proxy, "127.0.0.9", behind % b"192.0.2.7") == 404

@@ -28,13 +28,13 @@ def test_a_restore_brings_back_what_was_saved_and_keeps_the_database_from_before
     name = stack.backup()
     second = saved(stack)
 
-    done = stack.restore(name)
+    outcome = stack.restore(name)
 
-    assert done.returncode == 0, done.stderr
+    assert outcome.returncode == 0, outcome.stderr
     assert found(stack) == [first]
-    (kept,) = stack.databases() - {"hpn"}
-    assert f"kept as {kept}" in done.stdout
-    assert {id for (id,) in stack.sql("SELECT id FROM documents", kept)} == {first, second}
+    (record,) = stack.databases() - {"hpn"}
+    assert f"kept as {record}" in outcome.stdout
+    assert {id for (id,) in stack.sql("SELECT id FROM documents", record)} == {first, second}
     assert [file.name for file in (stack.folder / "backups").iterdir()] == [name]
 
 
@@ -45,9 +45,9 @@ def test_a_backup_of_each_earlier_version_is_brought_up_to_date(stack: Stack, re
     stack.sql("DELETE FROM " + ("selections" if revision < DOCUMENTS else "documents"), "hpn")
     saved(stack)  # and so this version's tables
 
-    done = stack.restore(name)
+    outcome = stack.restore(name)
 
-    assert done.returncode == 0, done.stderr
+    assert outcome.returncode == 0, outcome.stderr
     assert found(stack) == [id]
     saved(stack)
 
@@ -55,10 +55,10 @@ def test_a_backup_of_each_earlier_version_is_brought_up_to_date(stack: Stack, re
 def test_without_docker_compose_a_restore_says_what_takes_its_place(stack: Stack) -> None:
     (stack.folder / "bin/docker").write_text("#!/bin/sh\nexit 1\n")
 
-    done = stack.restore("hpn-20260101T020000Z.dump")
+    outcome = stack.restore("hpn-20260101T020000Z.dump")
 
-    assert done.returncode == 2
-    assert "docker compose is not here: docs/kubernetes.md" in done.stderr
+    assert outcome.returncode == 2
+    assert "docker compose is not here: docs/kubernetes.md" in outcome.stderr
 
 
 IN_DOCUMENTS = (
@@ -135,8 +135,8 @@ def dump_changed(stack: Stack, name: str, statement: str) -> None:
     """Make the backup one of a database in which a statement has run."""
     stack.sql("CREATE DATABASE hpn_restored TEMPLATE hpn")
     stack.sql(statement, "hpn_restored")
-    made = stack.run("pg_dump", "--format=custom", f"--file={stack.folder}/backups/{name}", "hpn_restored")
-    assert made.returncode == 0, made.stderr  # what is left there is in nobody's way
+    output = stack.run("pg_dump", "--format=custom", f"--file={stack.folder}/backups/{name}", "hpn_restored")
+    assert output.returncode == 0, output.stderr  # what is left there is in nobody's way
 
 
 @pytest.mark.parametrize(
@@ -160,12 +160,12 @@ def test_a_wrong_or_broken_backup_changes_nothing(
     before = found(stack)
     spoil(stack, name)
 
-    done = stack.restore(name)
+    outcome = stack.restore(name)
 
-    assert done.returncode != 0
-    assert words in done.stderr
-    assert name in done.stderr
-    assert "Traceback" not in done.stderr
+    assert outcome.returncode != 0
+    assert words in outcome.stderr
+    assert name in outcome.stderr
+    assert "Traceback" not in outcome.stderr
     assert stack.databases() == {"hpn"}
     assert found(stack) == before
 
@@ -175,10 +175,10 @@ def test_nothing_is_restored_while_the_service_runs(stack: Stack) -> None:
     name = stack.backup()
     (stack.folder / "running").write_text("4f66ad9a0b2e\n")
 
-    done = stack.restore(name)
+    outcome = stack.restore(name)
 
-    assert done.returncode != 0
-    assert "docker compose stop web" in done.stderr
+    assert outcome.returncode != 0
+    assert "docker compose stop web" in outcome.stderr
     assert stack.databases() == {"hpn"}
 
 
@@ -187,10 +187,10 @@ def test_nothing_is_restored_while_anything_else_uses_the_database(stack: Stack)
     name = stack.backup()
 
     with psycopg.connect(stack.address()):
-        done = stack.restore(name)
+        outcome = stack.restore(name)
 
-    assert done.returncode != 0
-    assert "in use by 1 connection" in done.stderr
+    assert outcome.returncode != 0
+    assert "in use by 1 connection" in outcome.stderr
     assert stack.databases() == {"hpn"}
 
 
@@ -201,10 +201,10 @@ def test_a_user_of_the_database_at_the_last_moment_keeps_it(stack: Stack) -> Non
     assert stack.run(*unpacked, name).returncode == 0
 
     with psycopg.connect(stack.address()):
-        done = stack.run(*service)
+        outcome = stack.run(*service)
 
-    assert done.returncode != 0
-    assert "nothing has changed" in done.stderr
+    assert outcome.returncode != 0
+    assert "nothing has changed" in outcome.stderr
     assert stack.databases() == {"hpn"}
 
 
@@ -227,11 +227,11 @@ def test_the_command_in_between_makes_a_new_database_ready_and_says_why_it_can_n
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("HPN_DATABASE_URL", f"sqlite:///{tmp_path}/new.sqlite3")
-    made = main(["database"])
+    output = main(["database"])
     monkeypatch.setenv("HPN_DATABASE_URL", "postgresql://hpn@127.0.0.1:1/hpn")
     unreachable = main(["database"])
 
-    said = capsys.readouterr()
-    assert (made, unreachable) == (0, 2)
-    assert said.out == "the database is up to date, and selections can be saved in it\n"
-    assert "unavailable" in said.err
+    message = capsys.readouterr()
+    assert (output, unreachable) == (0, 2)
+    assert message.out == "the database is up to date, and selections can be saved in it\n"
+    assert "unavailable" in message.err

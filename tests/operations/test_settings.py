@@ -36,11 +36,11 @@ def test_the_example_file_shows_the_defaults(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.chdir(ROOT)
     for name, value in example().items():
         monkeypatch.setenv(name, value)
-    shown, default = Settings(), Settings.model_construct()
+    view, default = Settings(), Settings.model_construct()
 
     for name in set(Settings.model_fields) - {"catalogue_folder"}:
-        assert getattr(shown, name) == getattr(default, name), name
-    assert shown.catalogue_folder.resolve() == default.catalogue_folder
+        assert getattr(view, name) == getattr(default, name), name
+    assert view.catalogue_folder.resolve() == default.catalogue_folder
 
 
 def test_the_compose_file_names_no_variable_of_the_service_that_is_no_setting() -> None:
@@ -115,16 +115,16 @@ def test_right_values_are_taken(name: str, value: str, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize(
-    ("name", "meant"),
+    ("name", "intended_name"),
     [("HPN_API_KEY", "HPN_API_KEYS"), ("HPN_WORKER", "HPN_WORKERS"), ("hpn_database", "HPN_DATABASE_URL")],
 )
 def test_a_misspelt_variable_keeps_the_service_from_starting(
-    name: str, meant: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    name: str, intended_name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv(name, "1")
 
     assert main(["serve"]) == 2
-    assert capsys.readouterr().err == f"{name} is not a setting; it looks like {meant}\n"
+    assert capsys.readouterr().err == f"{name} is not a setting; it looks like {intended_name}\n"
 
 
 SERVICE = {

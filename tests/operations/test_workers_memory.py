@@ -23,12 +23,12 @@ def test_workers_that_may_take_more_than_there_is_are_named(
     file = tmp_path / "memory.max"
     file.write_text(limit)
 
-    said = shortage(workers, 1_000_000_000, [file, tmp_path / "none"])
+    message = shortage(workers, 1_000_000_000, [file, tmp_path / "none"])
 
-    assert (said is None) is enough
-    if said is not None:
-        assert said.startswith("HPN_WORKERS is 4, which with fleets may take 7.2 GB, and this container has 4.8 GB")
-        assert "WEB_MEMORY" in said
+    assert (message is None) is enough
+    if message is not None:
+        assert message.startswith("HPN_WORKERS is 4, which with fleets may take 7.2 GB, and this container has 4.8 GB")
+        assert "WEB_MEMORY" in message
 
 
 def test_a_machine_without_limits_says_nothing(tmp_path: Path) -> None:

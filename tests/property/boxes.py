@@ -65,9 +65,9 @@ def box_at_random(chance: random.Random, document: Json | None = None) -> Json:
     candidates = [*SINGLE, *(ROWS if "phases" in cycle else ("radial_N", "axial_N"))]
     candidates += [f"phases.{k}.torque_Nm" for k in range(len(cycle.get("phases", ())))]
     for path in candidates:
-        found = value_at(document, path)
+        result = value_at(document, path)
         is_row = path in ROWS
-        if chance.random() < 0.5 or isinstance(found, dict) or (not is_row and not found):
+        if chance.random() < 0.5 or isinstance(result, dict) or (not is_row and not result):
             continue
         crosses = path.rpartition(".")[2] in CROSSING and not path.startswith("emergency_stop.brake")
         most = 150 if crosses and chance.random() < 0.2 else 40
@@ -75,12 +75,12 @@ def box_at_random(chance: random.Random, document: Json | None = None) -> Json:
         if path in ("requirements.efficiency", "motion.mechanism.efficiency", "output_load.load_coefficient"):
             tolerances[path] = {"minus": {"percent": 0}, "plus": {"percent": 0}}
             side = "minus" if path.endswith("efficiency") else "plus"
-            room = 100 * (3.0 / found - 1) if side == "plus" else 20.0  # no load coefficient is above 3
+            room = 100 * (3.0 / result - 1) if side == "plus" else 20.0  # no load coefficient is above 3
             tolerances[path][side] = {"percent": min(percent, room) / 1.001}
         elif chance.random() < 0.2:
             tolerances[path] = {"minus": {"percent": percent / 2}, "plus": {"percent": percent}}
-        elif chance.random() < 0.2 and found:
-            tolerances[path] = {"absolute": abs(found) * percent / 100}
+        elif chance.random() < 0.2 and result:
+            tolerances[path] = {"absolute": abs(result) * percent / 100}
         else:
             tolerances[path] = {"percent": percent}
     return document | {"tolerances": tolerances}
@@ -88,16 +88,16 @@ def box_at_random(chance: random.Random, document: Json | None = None) -> Json:
 
 def _ask_more(document: Json, chance: random.Random) -> None:
     """Ask more often for what few applications ask for: life, stops by the brake, pinion or pulley."""
-    asked = document.setdefault("requirements", {})
+    question = document.setdefault("requirements", {})
     if chance.random() < 0.5:
-        asked.setdefault("life_h", 10 ** chance.uniform(3, 5))
+        question.setdefault("life_h", 10 ** chance.uniform(3, 5))
     if "phases" not in document["duty_cycle"]:
         return
     if chance.random() < 0.2:
         brake = {"torque_Nm": chance.uniform(0.5, 30), "load_torque_Nm": chance.uniform(0, 20)}
         document["emergency_stop"] = {"brake": brake, "count": chance.choice([0, 10, 10**5])}
-        asked["load_inertia_kgm2"] = 10 ** chance.uniform(-3, 0.5)
-        asked["motor"] = {**asked.get("motor", {}), "inertia_kgm2": 10 ** chance.uniform(-5, -3)}
+        question["load_inertia_kgm2"] = 10 ** chance.uniform(-3, 0.5)
+        question["motor"] = {**question.get("motor", {}), "inertia_kgm2": 10 ** chance.uniform(-5, -3)}
     if chance.random() < 0.2 and "output_load" in document:
         drive = {"type": chance.choice(["rack_and_pinion", "belt"]), "diameter_mm": chance.uniform(20, 200)}
         document["output_load"]["drive"] = drive
@@ -121,13 +121,13 @@ def value_at(document: Json, path: str) -> Any:
 
 def ends_of(document: Json) -> Ends:
     """Both ends of each number that has a tolerance, by its place."""
-    found: Ends = {}
+    result: Ends = {}
     tolerances = document["tolerances"]
     for path in sorted(tolerances, key=lambda one: one.startswith("phases.")):
         for place in _places(document, path):
             value = _at(document, place)
-            found[place] = _around(tolerances[path], value)
-    return {place: ends for place, ends in found.items() if ends[0] < ends[1]}
+            result[place] = _around(tolerances[path], value)
+    return {place: ends for place, ends in result.items() if ends[0] < ends[1]}
 
 
 def _places(document: Json, path: str) -> Iterator[Place]:

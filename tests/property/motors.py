@@ -11,7 +11,7 @@ def motors(chance: random.Random, count: int, inertia: float = 1.0, *, curved: b
 
     With `curved` half of them have a torque curve as well.
     """
-    found = []
+    result = []
     for number in range(count):
         torque, speed = 10 ** chance.uniform(-0.5, 2), chance.uniform(1000, 8000)
         figures = {
@@ -25,8 +25,8 @@ def motors(chance: random.Random, count: int, inertia: float = 1.0, *, curved: b
         known: Json = {name: value for name, value in figures.items() if chance.random() < 0.95}
         if curved and chance.random() < 0.5:
             known["curve"] = curve_at_random(chance, speed)
-        found.append(MotorEntry.model_validate({"designation": f"M {number}", **known}))
-    return found
+        result.append(MotorEntry.model_validate({"designation": f"M {number}", **known}))
+    return result
 
 
 def curve_at_random(chance: random.Random, last_rpm: float) -> list[Json]:

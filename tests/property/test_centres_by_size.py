@@ -51,10 +51,10 @@ def test_a_candidate_is_judged_as_with_the_number_of_its_size_for_all(catalogue:
             continue
         alone = of_sizes(application, catalogue)
         for gear in selection.candidates:
-            wanted = alone[gear.size].candidate(gear.designation)
-            assert wanted is not None
+            expected = alone[gear.size].candidate(gear.designation)
+            assert expected is not None
             names = [name for name in gear.__struct_fields__ if name != "rank"]
-            assert [getattr(gear, name) for name in names] == [getattr(wanted, name) for name in names], application
+            assert [getattr(gear, name) for name in names] == [getattr(expected, name) for name in names], application
             compared += 1
             lacking += bool(gear.missing)
     assert compared > 1000
@@ -72,9 +72,9 @@ def test_axes_of_a_batch_keep_their_own_centres(seed: int, catalogue: Catalogue)
 
     together = judge_batch(applications, catalogue, lambda judged: judged.selection())
 
-    for application, found in zip(applications, together, strict=True):
-        if isinstance(found, InputError):
+    for application, result in zip(applications, together, strict=True):
+        if isinstance(result, InputError):
             with pytest.raises(InputError):
                 select(application, catalogue)
         else:
-            assert found == select(application, catalogue)
+            assert result == select(application, catalogue)

@@ -38,29 +38,29 @@ def differences(reply: Json, expected: Answer) -> Iterator[str]:
     if order != [c.gear.name for c in expected.candidates]:
         yield f"order: {order} instead of {[c.gear.name for c in expected.candidates]}"
         return
-    for given, wanted in zip(reply["candidates"], expected.candidates, strict=True):
+    for inputs, target in zip(reply["candidates"], expected.candidates, strict=True):
         fixed = {
-            "size": wanted.gear.size,
-            "ratio": wanted.gear.ratio,
-            "stages": wanted.gear.stages,
-            "status": wanted.status,
-            "rank": wanted.rank,
-            "governing_check": wanted.governing,
-            "missing": ["output_load.shaft_centre_mm"] if wanted.lacks_input else [],
+            "size": target.gear.size,
+            "ratio": target.gear.ratio,
+            "stages": target.gear.stages,
+            "status": target.status,
+            "rank": target.rank,
+            "governing_check": target.governing,
+            "missing": ["output_load.shaft_centre_mm"] if target.lacks_input else [],
         }
         for name, text in fixed.items():
-            if given[name] != text:
-                yield f"{wanted.gear.name} {name}: {given[name]} instead of {text}"
-        for name, value in (wanted.figures | {"utilisation": wanted.utilisation}).items():
-            if not same(given[name], value):
-                yield f"{wanted.gear.name} {name}: {given[name]} instead of {value}"
-        if [(c["code"], c["status"]) for c in given["checks"]] != [(c.code, c.status) for c in wanted.checks]:
-            yield f"{wanted.gear.name} checks: {given['checks']} instead of {wanted.checks}"
+            if inputs[name] != text:
+                yield f"{target.gear.name} {name}: {inputs[name]} instead of {text}"
+        for name, value in (target.figures | {"utilisation": target.utilisation}).items():
+            if not same(inputs[name], value):
+                yield f"{target.gear.name} {name}: {inputs[name]} instead of {value}"
+        if [(c["code"], c["status"]) for c in inputs["checks"]] != [(c.code, c.status) for c in target.checks]:
+            yield f"{target.gear.name} checks: {inputs['checks']} instead of {target.checks}"
             continue
-        for got, check in zip(given["checks"], wanted.checks, strict=True):
+        for got, check in zip(inputs["checks"], target.checks, strict=True):
             for name in ("demand", "limit", "utilisation", "at_least"):
                 if not same(got[name], getattr(check, name)):
-                    yield f"{wanted.gear.name} {check.code} {name}: {got[name]} instead of {getattr(check, name)}"
+                    yield f"{target.gear.name} {check.code} {name}: {got[name]} instead of {getattr(check, name)}"
 
 
 def compare_many(catalogue: Catalogue, gears: list[Gear], cases: list[Json]) -> Counter[object]:
@@ -74,8 +74,8 @@ def compare_many(catalogue: Catalogue, gears: list[Gear], cases: list[Json]) -> 
             assert alone.json("/") == selection.json("/")
             selection = alone
         expected = contract.answer(case, gears)
-        found = list(itertools.islice(differences(selection.reply("/"), expected), 5))
-        assert not found, "\n".join([json.dumps(case), *found])
+        result = list(itertools.islice(differences(selection.reply("/"), expected), 5))
+        assert not result, "\n".join([json.dumps(case), *result])
         reached.update((check.code, check.status) for c in expected.candidates for check in c.checks)
         reached.update((c.status, c.utilisation is None or math.isinf(c.utilisation)) for c in expected.candidates)
         reached.update(c.governing for c in expected.candidates)

@@ -45,10 +45,10 @@ def move_at_random(chance: random.Random, rotary: bool) -> Json:
     if profile != "dwell":
         move[way] = chance.choice([1, -1]) * extreme(chance, 1e-12, 1e9)
     if profile in ("trapezoidal", "s_curve"):
-        said = chance.randrange(4)
-        move |= {speed: extreme(chance, 1e-12, 1e12)} if said in (1, 3) else {}
-        move |= {acceleration: extreme(chance, 1e-12, 1e12)} if said in (2, 3) else {}
-        if said == 3:
+        message = chance.randrange(4)
+        move |= {speed: extreme(chance, 1e-12, 1e12)} if message in (1, 3) else {}
+        move |= {acceleration: extreme(chance, 1e-12, 1e12)} if message in (2, 3) else {}
+        if message == 3:
             del move["time_s"]
     if profile == "s_curve" and chance.random() < 0.5:
         jerk = acceleration.replace("acceleration", "jerk").replace("s2", "s3")

@@ -79,5 +79,7 @@ def test_gears_stand_as_sorted_by_hand_and_the_foremost_is_the_first(wishes: str
     assert evaluation.order.tolist() == by_hand
     for among in (suits, some):
         first = [next((place for place in places if among[axis, place]), None) for axis, places in enumerate(by_hand)]
-        found = [place if any_ else None for place, any_ in zip(evaluation.foremost(among), among.any(-1), strict=True)]
-        assert found == first
+        values = [
+            place if any_ else None for place, any_ in zip(evaluation.foremost(among), among.any(-1), strict=True)
+        ]
+        assert values == first

@@ -37,12 +37,14 @@ def told(stops: Stops, gears: list[int]) -> Told:
     for place, number in enumerate(gears):
         gear, known = GEARS[number], asked(stops, place, GEARS[number].ratio)
         unknown = known | {"requirements": {"efficiency": known["requirements"]["efficiency"]}}
-        found, without = (
+        result, without = (
             select(Application.model_validate(one), CATALOGUE).candidate(gear.designation) for one in (known, unknown)
         )
-        assert found is not None and without is not None
-        angle = np.radians(found.stopping_angle_deg or np.nan)
-        rows.append((found.stop_torque_Nm, found.stopping_time_s, angle, found.stop_energy_J, without.stop_torque_Nm))
+        assert result is not None and without is not None
+        angle = np.radians(result.stopping_angle_deg or np.nan)
+        rows.append(
+            (result.stop_torque_Nm, result.stopping_time_s, angle, result.stop_energy_J, without.stop_torque_Nm)
+        )
     return Told(*np.array(rows, dtype=float).T)
 
 
@@ -86,14 +88,14 @@ def test_no_stop_that_is_stepped_exceeds_what_is_told_of_it(soak: bool) -> None:
     that still drives while the brake is on (OFF_LATE) adds its work to the energy.
     """
     for seed in range(30 if soak else 1):
-        stops, bounds, found = run(seed, 200)
-        shares = found.torque_Nm / bounds.torque_Nm
+        stops, bounds, result = run(seed, 200)
+        shares = result.torque_Nm / bounds.torque_Nm
         period_s = 2 * np.pi / stops.resonance
         long = stops.speed * (stops.motor + stops.load) / stops.brake_Nm > LEAST * period_s
-        energies = (found.energy_J / bounds.energy_J)[long & (stops.behaviour != OFF_LATE)]
+        energies = (result.energy_J / bounds.energy_J)[long & (stops.behaviour != OFF_LATE)]
         assert shares.max() <= 1.01  # the bound's own, of which stepping is 1e-3
-        assert (found.torque_Nm / bounds.torque_without_Nm).max() <= 1.01
-        assert (found.time_s / bounds.time_s).max() <= 1 + LINES
-        assert (found.angle_rad / bounds.angle_rad)[long].max() <= 1 + LINES
+        assert (result.torque_Nm / bounds.torque_without_Nm).max() <= 1.01
+        assert (result.time_s / bounds.time_s).max() <= 1 + LINES
+        assert (result.angle_rad / bounds.angle_rad)[long].max() <= 1 + LINES
         assert energies.max() <= 1 + LINES
         assert shares.max() > 0.9  # a bound that is met, not one far off

@@ -44,17 +44,17 @@ def test_frequencies_are_the_eigenvalues_of_two_masses_on_a_spring() -> None:
         free = stiffness.drive_resonance(
             torsional_stiffness_Nm_per_rad=K, load_inertia_kgm2=J, ratio=i, motor_inertia_kgm2=J_m
         )
-        held = stiffness.natural_frequency(torsional_stiffness_Nm_per_rad=K, load_inertia_kgm2=J)
+        value_held = stiffness.natural_frequency(torsional_stiffness_Nm_per_rad=K, load_inertia_kgm2=J)
         assert float(free) == pytest.approx(float(mpmath.sqrt(abs(largest)) / (2 * mpmath.pi)), rel=1e-11)
-        assert held < free
+        assert value_held < free
 
 
 def test_an_axis_with_and_without_a_held_motor_swings_as_worked_out_by_hand() -> None:
-    held = stiffness.natural_frequency(torsional_stiffness_Nm_per_rad=K3_20A, load_inertia_kgm2=0.8)
+    value_held = stiffness.natural_frequency(torsional_stiffness_Nm_per_rad=K3_20A, load_inertia_kgm2=0.8)
     free = stiffness.drive_resonance(
         torsional_stiffness_Nm_per_rad=K3_20A, load_inertia_kgm2=0.8, ratio=5, motor_inertia_kgm2=0.0015
     )
-    assert (float(held), float(free)) == pytest.approx((28.692, 135.593), abs=5e-4)
+    assert (float(value_held), float(free)) == pytest.approx((28.692, 135.593), abs=5e-4)
 
 
 def test_torque_both_ways_winds_the_gear_up_twice_and_crosses_its_backlash() -> None:
@@ -79,8 +79,8 @@ def test_what_the_gear_alone_catches_winds_it_up_to_its_momentary_peak_torque() 
 
 
 def test_a_load_beside_the_shaft_centre_counts_as_worked_out_by_hand() -> None:
-    given = {"radial_position_mm": 45, "axial_radius_mm": 40, "shaft_centre_mm": 21}
-    assert float(bearing.radial_load_at_centre(radial_N=600, axial_N=200, **given)) == pytest.approx(1666.67, abs=5e-3)
+    inputs = {"radial_position_mm": 45, "axial_radius_mm": 40, "shaft_centre_mm": 21}
+    assert float(bearing.radial_load_at_centre(radial_N=600, axial_N=200, **inputs)) == pytest.approx(1666.67, abs=5e-3)
 
 
 def test_no_bearing_of_any_geometry_bears_more_than_under_the_equivalent_load() -> None:

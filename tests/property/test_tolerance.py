@@ -40,7 +40,7 @@ def search(
 ) -> tuple[float, set[str]]:
     """The largest excess over a proved worst case, and the checks that had one."""
     base = judge(application, catalogue).evaluation
-    (found,) = worst_cases([members_of(application, catalogue)], base.checks, base.gears, catalogue)
+    (result,) = worst_cases([members_of(application, catalogue)], base.checks, base.gears, catalogue)
     ends, codes = ends_of(document), [check.code for check in base.checks]
     count, excess = len(ends), 0.0
 
@@ -51,9 +51,9 @@ def search(
         assert [check.code for check in judged.checks] == codes
         with np.errstate(all="ignore"):
             over = np.where(
-                found.exact[:, None] & np.isfinite(found.used[:, None]), judged.used / found.used[:, None], 0
+                result.exact[:, None] & np.isfinite(result.used[:, None]), judged.used / result.used[:, None], 0
             )
-            zero = found.exact[:, None] & (found.used[:, None] == 0) & (judged.used > 0)
+            zero = result.exact[:, None] & (result.used[:, None] == 0) & (judged.used > 0)
         excess = max(excess, float(np.nanmax(over)) - 1, float(zero.any()))
         return judged.used
 
@@ -65,19 +65,19 @@ def search(
             points = [[*best[:k], share, *best[k + 1 :]] for k in range(count) for share in (0.0, 1.0, chance.random())]
             points.append(best)
         used(points)
-    judged = {code for code, exact in zip(codes, found.exact, strict=True) if exact.all()}
+    judged = {code for code, exact in zip(codes, result.exact, strict=True) if exact.all()}
     return excess, judged
 
 
 def attained(application: Application, catalogue: Catalogue) -> float:
     """The largest difference between a worst case and its corner as an ordinary application, over all checks."""
     base = judge(application, catalogue).evaluation
-    (found,) = worst_cases([members_of(application, catalogue)], base.checks, base.gears, catalogue)
+    (result,) = worst_cases([members_of(application, catalogue)], base.checks, base.gears, catalogue)
     largest = 0.0
     for number, check in enumerate(base.checks):
-        gear = int(np.nan_to_num(found.used[number], nan=-1, posinf=-1).argmax())
-        if np.isfinite(worst := found.used[number, gear]):
-            box, corner = found.points[found.at[number, gear]]
+        gear = int(np.nan_to_num(result.used[number], nan=-1, posinf=-1).argmax())
+        if np.isfinite(worst := result.used[number, gear]):
+            box, corner = result.points[result.at[number, gear]]
             alone = judge(box.application_at(corner), catalogue).evaluation
             value = alone.used[[one.code for one in alone.checks].index(check.code), 0, gear]
             largest = max(largest, abs(value - worst) / max(abs(worst), 1e-300))
@@ -138,11 +138,11 @@ VARYING: tuple[Json, ...] = (
 @pytest.mark.parametrize("document", VARYING, ids=["turning", "lifting"])
 def test_samples_that_are_judged_together_are_those_judged_one_by_one(document: Json, catalogue: Catalogue) -> None:
     """Two ways: rows of one duty, their motions changed at once; and each an application as one would type it."""
-    asked = {"efficiency": 0.95, **document.get("requirements", {}), "sizes": ["20A", "32A"]}
-    application = Application.model_validate(document | {"requirements": asked})
+    body = {"efficiency": 0.95, **document.get("requirements", {}), "sizes": ["20A", "32A"]}
+    application = Application.model_validate(document | {"requirements": body})
     base = judge(application, catalogue).evaluation
     members = members_of(application, catalogue)
-    (found,) = worst_cases([members], base.checks, base.gears, catalogue, samples=512)
+    (result,) = worst_cases([members], base.checks, base.gears, catalogue, samples=512)
     parts = [(box, points[:8]) for box, points in members.sampled(512)]
 
     seen = [box.application_at(point) for box, points in parts for point in points]
@@ -154,8 +154,8 @@ def test_samples_that_are_judged_together_are_those_judged_one_by_one(document: 
     ]
     for row, judged in enumerate(alone):
         assert np.allclose(together[:, row], judged.used[:, 0], rtol=1e-12, atol=0, equal_nan=True)
-        open_ = ~found.exact.all(axis=1)
-        assert (judged.used[open_, 0] <= found.used[open_] * (1 + 1e-12)).all()
+        open_ = ~result.exact.all(axis=1)
+        assert (judged.used[open_, 0] <= result.used[open_] * (1 + 1e-12)).all()
 
 
 WRONG: dict[str, dict[str, Dependence]] = {

@@ -55,9 +55,9 @@ def has_no_brake(candidate: Candidate) -> bool:
 
 def test_each_alternative_of_each_rejected_gear_alone_makes_it_pass(catalogue: Catalogue, soak: bool) -> None:
     """Property limits included, as the link writes it and the form reads it again."""
-    found = rejected(random.Random(16), catalogue)
+    result = rejected(random.Random(16), catalogue)
     several, properties = 0, 0
-    for application, candidate in (next(found) for _ in range(6000 if soak else 300)):
+    for application, candidate in (next(result) for _ in range(6000 if soak else 300)):
         alternatives = needed_of(candidate, application, catalogue)
         assert alternatives or has_no_brake(candidate), (candidate, application)
         several += len(alternatives) > 1
@@ -71,8 +71,8 @@ def test_each_alternative_of_each_rejected_gear_alone_makes_it_pass(catalogue: C
 
 def test_no_alternative_says_more_than_is_needed(catalogue: Catalogue, soak: bool) -> None:
     """Each of its changes is necessary: with all others as they are printed, and this one left out, the gear fails."""
-    found, several = rejected(random.Random(18), catalogue), 0
-    for application, candidate in (next(found) for _ in range(6000 if soak else 250)):
+    result, several = rejected(random.Random(18), catalogue), 0
+    for application, candidate in (next(result) for _ in range(6000 if soak else 250)):
         for alternative in needed_of(candidate, application, catalogue):
             fewer = list(without_one(alternative))
             several += len(fewer) > 1
@@ -97,8 +97,8 @@ def without_one(alternative: Alternative) -> Iterator[Alternative]:
 @pytest.mark.parametrize("marker", ["", "de"])
 def test_no_figure_of_an_alternative_has_more_than_four_digits(catalogue: Catalogue, soak: bool, marker: str) -> None:
     """A percentage has three; a number of stops and a large torque have zeros behind them."""
-    found, reader = rejected(random.Random(19), catalogue), Reader.of_marker(marker)
-    for application, candidate in (next(found) for _ in range(2000 if soak else 100)):
+    result, reader = rejected(random.Random(19), catalogue), Reader.of_marker(marker)
+    for application, candidate in (next(result) for _ in range(2000 if soak else 100)):
         for alternative in needed_of(candidate, application, catalogue):
             text = reader.sentence(condition_of(alternative)).replace(GROUP, "").replace("T_k", "").replace("N_k", "")
             text = re.sub(r"·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", "", text)
@@ -126,8 +126,8 @@ def test_less_inertia_that_mends_an_inertia_ratio_too_is_said_alone(catalogue: C
     """9 of 1,146 alternatives let the ratio rise beside the inertia that drops."""
     cycle = {"phases": [{"torque_Nm": 20, "speed_rpm": 100, "duration_s": 1}]}
     motor = {"inertia_kgm2": 0.0001, "inertia_ratio": 100}
-    asked = {"sizes": ["20A"], "ratios": [5], "load_inertia_kgm2": 5, "natural_frequency_Hz": 90, "motor": motor}
-    application = Application.model_validate({"duty_cycle": cycle, "requirements": asked})
+    document = {"sizes": ["20A"], "ratios": [5], "load_inertia_kgm2": 5, "natural_frequency_Hz": 90, "motor": motor}
+    application = Application.model_validate({"duty_cycle": cycle, "requirements": document})
     [candidate] = select(application, catalogue).candidates
     assert {check.code for check in candidate.failing} == {"inertia_ratio", "natural_frequency"}
 
@@ -142,8 +142,8 @@ def test_less_torque_that_mends_a_position_error_too_is_said_alone(catalogue: Ca
     at 40 % of them 80 Nm wind up by 21.2 arcmin.
     """
     cycle = {"phases": [{"torque_Nm": 200, "speed_rpm": 100, "duration_s": 1}]}
-    asked = {"sizes": ["20A"], "ratios": [5], "position_error_arcmin": 45}
-    application = Application.model_validate({"duty_cycle": cycle, "requirements": asked})
+    document = {"sizes": ["20A"], "ratios": [5], "position_error_arcmin": 45}
+    application = Application.model_validate({"duty_cycle": cycle, "requirements": document})
     [candidate] = select(application, catalogue).candidates
     assert "position_error" in {check.code for check in candidate.failing}
 
@@ -211,8 +211,8 @@ def test_a_check_is_full_when_its_driver_has_grown_as_far_as_it_says(catalogue: 
                 seen.add((code, growth.driver))
                 for factor, expected in ((growth.factor * (1 - 1e-9), "pass"), (growth.factor * (1 + 1e-6), "fail")):
                     again = select(grown(application, growth.driver, factor, candidate), catalogue)
-                    found = again.candidate(candidate.designation)
-                    check = found and found.check(code)
+                    result = again.candidate(candidate.designation)
+                    check = result and result.check(code)
                     assert check is not None
                     assert check.status == expected, (code, growth, application)
     assert len(seen) > 10

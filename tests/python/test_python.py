@@ -39,8 +39,10 @@ def loaded(*lines: str) -> set[str]:
     """Packages from outside the standard library that a program of these lines has loaded at its end."""
     program = "\n".join((*lines, "import json, sys; print(json.dumps(sorted(sys.modules)))"))
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("HPN_", "PYTEST", "COV"))}
-    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
-    names = {name.partition(".")[0] for name in json.loads(done.stdout.splitlines()[-1])}
+    outcome = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
+    )
+    names = {name.partition(".")[0] for name in json.loads(outcome.stdout.splitlines()[-1])}
     before = subprocess.run([sys.executable, "-c", "import sys; print(*sys.modules)"], capture_output=True, text=True)
     return names - sys.stdlib_module_names - {name.partition(".")[0] for name in before.stdout.split()} - {"__main__"}
 
@@ -123,8 +125,8 @@ class Tags(HTMLParser):
 
 def test_a_notebook_shows_verdict_checks_and_candidates_without_anything_to_load() -> None:
     answer = hpn.select(worked_example())
-    for shown in (answer._repr_html_(), hpn.catalogue()._repr_html_()):
-        tags = Tags(shown)
+    for view in (answer._repr_html_(), hpn.catalogue()._repr_html_()):
+        tags = Tags(view)
         assert tags.open == []
         assert tags.names == {*("table", "caption", "thead", "tbody", "tr", "th", "td"), "style", "scope"}
     assert answer.selected and answer.selected in answer._repr_html_()
@@ -159,11 +161,11 @@ def test_a_supplement_counts_where_it_is_given(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("format", "mark"), [("pdf", b"%PDF"), ("xlsx", b"PK"), ("aasx", b"PK")])
 def test_an_answer_becomes_each_file_of_the_service(format: Any, mark: bytes) -> None:
-    made = hpn.report(hpn.select(worked_example()), format, title="Axis 7", reference="4711")
+    output = hpn.report(hpn.select(worked_example()), format, title="Axis 7", reference="4711")
 
-    assert made.startswith(mark)
+    assert output.startswith(mark)
     if format == "pdf":
-        assert "Axis 7" in pypdf.PdfReader(BytesIO(made)).pages[0].extract_text()
+        assert "Axis 7" in pypdf.PdfReader(BytesIO(output)).pages[0].extract_text()
 
 
 def test_a_report_is_on_the_gear_that_is_asked_for() -> None:

@@ -271,29 +271,29 @@ def torque_range(cycle: Mapping[str, Any], wishes: Mapping[str, Any]) -> tuple[A
 def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: Any, by: Arithmetic) -> float | None:
     """Both checks of the output bearing; its life L50."""
     phases = application["duty_cycle"]["phases"]
-    given = application.get("output_load")
+    inputs = application.get("output_load")
     own = any(p.get(key) is not None for p in phases for key in ("radial_N", "axial_N"))
-    if given is None and not own:
+    if inputs is None and not own:
         return None
-    given = given or {}
-    f_w = given.get("load_coefficient", by.number(1))
+    inputs = inputs or {}
+    f_w = inputs.get("load_coefficient", by.number(1))
     loads = [
         tuple(
-            abs(p[key] if p.get(key) is not None else given[key] if given.get(key) is not None else 0.0)
+            abs(p[key] if p.get(key) is not None else inputs[key] if inputs.get(key) is not None else 0.0)
             for key in ("radial_N", "axial_N")
         )
         for p in phases
     ]
-    loads = [(F_R + own[0], F_A + own[1]) for (F_R, F_A), own in zip(loads, of_wheel(phases, given, by), strict=True)]
-    x, y, x_c = given.get("radial_position_mm"), given.get("axial_radius_mm", 0), given.get("shaft_centre_mm")
+    loads = [(F_R + own[0], F_A + own[1]) for (F_R, F_A), own in zip(loads, of_wheel(phases, inputs, by), strict=True)]
+    x, y, x_c = inputs.get("radial_position_mm"), inputs.get("axial_radius_mm", 0), inputs.get("shaft_centre_mm")
     if isinstance(x_c, Mapping):
         x_c = x_c.get(gear.size, x_c.get("others"))
     centred = [at_centre(F_R, F_A, x, y, x_c) for F_R, F_A in loads]
     P = [
-        None if F_R is None else equivalent(given.get("model", "linear"), F_R, F_A, gear)
+        None if F_R is None else equivalent(inputs.get("model", "linear"), F_R, F_A, gear)
         for F_R, (_, F_A) in zip(centred, loads, strict=True)
     ]
-    required = given.get("life_h", 20000) * (5 if given.get("life_basis") == "L10" else 1)
+    required = inputs.get("life_h", 20000) * (5 if inputs.get("life_basis") == "L10" else 1)
     k = (100 * 20000 / (duty.n_av * required)) ** (by.number(1) / 3)
     known = [p for p in P if p is not None]
     weights = [abs(p["speed_rpm"]) * p["duration_s"] for p in phases]
@@ -303,7 +303,7 @@ def _bearing(application: Mapping[str, Any], duty: _Duty, gear: Gear, at_most: A
         return (cubes / by.total(weights)) ** (by.number(1) / 3)
 
     if len(known) < len(P):
-        plain = [equivalent(given.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
+        plain = [equivalent(inputs.get("model", "linear"), F_R, F_A, gear) for F_R, F_A in loads]
         least = [p for p in plain if p is not None]
         whole = len(least) == len(plain)
         at_most("output_bearing_load", None, 1.0, least=f_w * max(least) if whole else None)

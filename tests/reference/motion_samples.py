@@ -80,8 +80,8 @@ def load_of_floats(m: Json, move: Json, per_rad: float, theta: Any, omega: Any, 
         gravity = m.get("gravity_mass_kg", 0) * 9.80665 * m.get("gravity_radius_mm", 0) / 1000
         friction = m.get("friction_torque_Nm", 0) * sign
         viscous = m.get("viscous_friction_Nm_per_rpm", 0) * omega * 30 / np.pi
-        held = gravity * np.cos(np.radians(theta)) + move.get("external_torque_Nm", 0)
-        return m["inertia_kgm2"] * alpha + friction + viscous + held
+        value_held = gravity * np.cos(np.radians(theta)) + move.get("external_torque_Nm", 0)
+        return m["inertia_kgm2"] * alpha + friction + viscous + value_held
     r, beta = per_rad / 1000, np.radians(m.get("incline_deg", 0))
     hanging = m.get("counterweight_kg", 0)
     weight = 9.80665 * (m["mass_kg"] * np.sin(beta) - hanging * np.sign(beta))

@@ -68,9 +68,11 @@ def test_a_published_limit_alone_uses_the_bearing_fully_and_gives_the_published_
             assert gear["bearing_life_L50_h"] == pytest.approx(handbook.BEARING_REFERENCE_LIFE_H, rel=ROUNDING)
             assert gear["bearing_life_L10_h"] == pytest.approx(handbook.BEARING_REFERENCE_LIFE_H / 5, rel=ROUNDING)
             for code in ("output_bearing_load", "output_bearing_life"):
-                found = check(reply, gear["designation"], code)
-                assert (found["demand"], found["limit"], found["utilisation"]) == pytest.approx((1, 1, 1), rel=ROUNDING)
-                assert found["status"] == "pass"
+                result = check(reply, gear["designation"], code)
+                assert (result["demand"], result["limit"], result["utilisation"]) == pytest.approx(
+                    (1, 1, 1), rel=ROUNDING
+                )
+                assert result["status"] == "pass"
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -111,7 +113,7 @@ def test_a_varying_cycle_lives_as_long_as_its_damage_summed_phase_by_phase(catal
         for first in grid:
             for second in grid:
                 loads = [(first, second), (second, 90.0), (1800.0, 2200.0), (300.0, first)]
-                shown = [phase(1, n, t, radial_N=r, axial_N=a) for (n, t), (r, a) in zip(phases, loads, strict=True)]
+                values = [phase(1, n, t, radial_N=r, axial_N=a) for (n, t), (r, a) in zip(phases, loads, strict=True)]
                 with mpmath.workdps(40):
                     damage = mpf(0)
                     for (n, t), (F_R, F_A) in zip(phases, loads, strict=True):
@@ -123,7 +125,7 @@ def test_a_varying_cycle_lives_as_long_as_its_damage_summed_phase_by_phase(catal
                     expected = float(cycle_time / damage)  # hours: the unit of time cancels
 
                 load = {"load_coefficient": f_w, "model": model}
-                reply = answer(cycle(*shown, pause_s=pause, output_load=load), catalogue)
+                reply = answer(cycle(*values, pause_s=pause, output_load=load), catalogue)
                 life = candidate(reply, "HPN-20A-5")["bearing_life_L50_h"]
 
                 assert life == pytest.approx(expected, rel=1e-12), (model, loads)

@@ -107,14 +107,16 @@ def test_at_or_below_the_repeated_peak_torque_equation_17_9_sets_no_limit() -> N
 
 def test_a_holding_phase_counts_in_no_average_torque_but_in_speed_and_rms() -> None:
     moving = {"torque_Nm": [10.0], "speed_rpm": [100.0], "duration_s": [2.0]}
-    held = {"torque_Nm": [10.0, 99.0], "speed_rpm": [100.0, 0.0], "duration_s": [2.0, 2.0]}
+    value_held = {"torque_Nm": [10.0, 99.0], "speed_rpm": [100.0, 0.0], "duration_s": [2.0, 2.0]}
 
-    alone, with_hold = equations.average_output_torque(**moving), equations.average_output_torque(**held)
+    alone, with_hold = equations.average_output_torque(**moving), equations.average_output_torque(**value_held)
     assert float(alone) == pytest.approx(10, rel=ROUNDING)
     assert float(with_hold) == pytest.approx(10, rel=ROUNDING)
-    speed = equations.average_output_speed(speed_rpm=held["speed_rpm"], duration_s=held["duration_s"], pause_s=0)
+    speed = equations.average_output_speed(
+        speed_rpm=value_held["speed_rpm"], duration_s=value_held["duration_s"], pause_s=0
+    )
     assert float(speed) == 50
-    rms = equations.rms_torque(torque_Nm=held["torque_Nm"], duration_s=held["duration_s"], pause_s=0)
+    rms = equations.rms_torque(torque_Nm=value_held["torque_Nm"], duration_s=value_held["duration_s"], pause_s=0)
     assert float(rms) == pytest.approx(((100 + 9801) / 2) ** 0.5, rel=ROUNDING)
 
 

@@ -161,10 +161,10 @@ def with_profile(motion: Json, profile: str) -> Json:
     ],
 )
 def test_phases_are_those_that_mpmath_integrates(motion: Json) -> None:
-    expected, found = reference.phases(motion), phases_of(motion)
+    expected, result = reference.phases(motion), phases_of(motion)
 
-    assert len(found) == len(expected)
-    for one, other in zip(expected, found, strict=True):
+    assert len(result) == len(expected)
+    for one, other in zip(expected, result, strict=True):
         for name in FIELDS:
             assert math.isclose(one[name], getattr(other, name), rel_tol=CLOSE, abs_tol=1e-12), (one, name)
 
@@ -247,7 +247,7 @@ def test_a_dwell_holds_gravity_without_friction_and_efficiency() -> None:
             {"profile": "trapezoidal", "angle_deg": 1, "time_s": 1},
         ],
     }
-    held = phases_of(motion)[0]
+    value_held = phases_of(motion)[0]
 
-    assert math.isclose(held.torque_Nm, (5 * 9.80665 * 0.2 * 0.5 - 1) / 3, rel_tol=1e-14)
-    assert (held.speed_rpm, held.peak_speed_rpm, held.duration_s, held.radial_N) == (0, 0, 2, 9)
+    assert math.isclose(value_held.torque_Nm, (5 * 9.80665 * 0.2 * 0.5 - 1) / 3, rel_tol=1e-14)
+    assert (value_held.speed_rpm, value_held.peak_speed_rpm, value_held.duration_s, value_held.radial_N) == (0, 0, 2, 9)

@@ -46,8 +46,8 @@ def expected(motion: Json, ratio: int, eta: float) -> tuple[float, float]:
 def test_torques_at_the_motor_are_those_that_mpmath_integrates(
     motion: Json, ratio: int, soak: bool, catalogue: Catalogue
 ) -> None:
-    asked = {"efficiency": 0.85, "motor": {"inertia_kgm2": MOTOR_INERTIA}, "sizes": ["20A"], "ratios": [4, 15]}
-    reply = answer({"duty_cycle": {"motion": motion, "pause_s": PAUSE}, "requirements": asked}, catalogue)
+    document = {"efficiency": 0.85, "motor": {"inertia_kgm2": MOTOR_INERTIA}, "sizes": ["20A"], "ratios": [4, 15]}
+    reply = answer({"duty_cycle": {"motion": motion, "pause_s": PAUSE}, "requirements": document}, catalogue)
 
     for each in (4, 15) if soak else (ratio,):
         gear = candidate(reply, f"HPN-20A-{each}")
@@ -63,9 +63,9 @@ def test_a_motor_that_speeds_up_a_table_bears_its_own_inertia_and_brakes_with_th
     table = {"type": "rotary", "inertia_kgm2": 2}
     moves = [{"profile": "triangular", "angle_deg": math.degrees(10), "acceleration_deg_per_s2": math.degrees(10)}]
     motor = {"inertia_kgm2": 0.02, "peak_torque_Nm": 12, "rated_torque_Nm": 4, "rated_speed_rpm": 400}
-    asked = {"sizes": ["20A"], "ratios": [5], "efficiency": 0.8, "motor": motor | {"inertia_ratio": 4}}
+    document = {"sizes": ["20A"], "ratios": [5], "efficiency": 0.8, "motor": motor | {"inertia_ratio": 4}}
     cycle_ = {"motion": {"mechanism": table, "moves": moves}, "pause_s": 1}
-    reply = answer({"duty_cycle": cycle_, "requirements": asked, "rank_by": "motor_torque"}, catalogue)
+    reply = answer({"duty_cycle": cycle_, "requirements": document, "rank_by": "motor_torque"}, catalogue)
     gear = candidate(reply, "HPN-20A-5")
 
     assert math.isclose(gear["motor_peak_torque_Nm"], 6, rel_tol=1e-12)
@@ -78,10 +78,10 @@ def test_a_motor_that_speeds_up_a_table_bears_its_own_inertia_and_brakes_with_th
 
 
 def test_without_its_inertia_the_motor_has_the_torque_over_ratio_and_efficiency_as_before(catalogue: Catalogue) -> None:
-    asked = {"efficiency": 0.9, "motor": {"peak_torque_Nm": 50}}
-    reply = answer({"duty_cycle": {"motion": CONTRACT}, "requirements": asked}, catalogue)
+    document = {"efficiency": 0.9, "motor": {"peak_torque_Nm": 50}}
+    reply = answer({"duty_cycle": {"motion": CONTRACT}, "requirements": document}, catalogue)
     inertia = {"load_inertia_kgm2": reply["duty"]["load_inertia_kgm2"]}
-    typed = answer({"duty_cycle": {"phases": reply["duty"]["phases"]}, "requirements": asked | inertia}, catalogue)
+    typed = answer({"duty_cycle": {"phases": reply["duty"]["phases"]}, "requirements": document | inertia}, catalogue)
 
     assert reply["candidates"] == typed["candidates"]
     assert "motor_torque_partial" in notices(reply)
@@ -106,9 +106,9 @@ def test_an_efficiency_curve_is_read_phase_by_phase_with_the_motors_inertia_too(
     """The table from above under a curve of η = 0.8 at 20 Nm: what a stated 0.8 gives, on that gear alone."""
     table = {"type": "rotary", "inertia_kgm2": 2}
     moves = [{"profile": "triangular", "angle_deg": math.degrees(10), "acceleration_deg_per_s2": math.degrees(10)}]
-    asked = {"sizes": ["20A"], "ratios": [4, 5], "motor": {"inertia_kgm2": 0.02}}
+    document = {"sizes": ["20A"], "ratios": [4, 5], "motor": {"inertia_kgm2": 0.02}}
     curve = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.7,\n20A,5,30,0.9,\n"
-    application = {"duty_cycle": {"motion": {"mechanism": table, "moves": moves}}, "requirements": asked}
+    application = {"duty_cycle": {"motion": {"mechanism": table, "moves": moves}}, "requirements": document}
     reply = answer(application, supplemented(efficiency=curve))
 
     assert math.isclose(candidate(reply, "HPN-20A-5")["motor_peak_torque_Nm"], 6, rel_tol=1e-12)

@@ -117,10 +117,10 @@ def test_spindle_slide_with_its_counterweight() -> None:
     radius = 0.02 / (2 * math.pi)
     a = 0.15 / (1 / 3)  # 100 mm in 1 s, a third of it for each ramp
 
-    up, raised, _, down, lowered, _, held = phases_of(motion)
+    up, raised, _, down, lowered, _, value_held = phases_of(motion)
 
     lifted = 60 * GRAVITY * radius
-    for phase in (raised, lowered, held):
+    for phase in (raised, lowered, value_held):
         assert math.isclose(phase.torque_Nm, lifted, rel_tol=1e-12)
     assert math.isclose(up.torque_Nm, lifted + 300 * a * radius, rel_tol=1e-12)
     assert math.isclose(down.torque_Nm, lifted - 300 * a * radius, rel_tol=1e-12)
@@ -191,8 +191,8 @@ def test_rotary_table(catalogue: Catalogue) -> None:
         "moves": [{"profile": "triangular", "angle_deg": 90, "speed_rpm": 60}],
     }
     motor = {"inertia_kgm2": 8.17e-4, "inertia_ratio": 3, "maximum_speed_rpm": 2000}
-    asked = {"sizes": ["32A"], "ratios": [25, 30], "motor": motor}
-    reply = answer({"duty_cycle": {"motion": motion}, "requirements": asked}, catalogue)
+    document = {"sizes": ["32A"], "ratios": [25, 30], "motor": motor}
+    reply = answer({"duty_cycle": {"motion": motion}, "requirements": document}, catalogue)
 
     assert reply["duty"]["load_inertia_kgm2"] * 1e4 == 15625  # J_L in kg·cm²
     assert math.isclose(reply["duty"]["maximum_output_speed_rpm"], 60, rel_tol=1e-14)

@@ -180,10 +180,10 @@ def expected_of(application: Json) -> tuple[list[Stretch], float, float, float]:
     """Stretches of an axis, its largest radial load in N, its equivalent load f_w P_m, its bearing life L50 in h."""
     cycle, load = application["duty_cycle"], application["output_load"]
     mechanism = cycle["motion"]["mechanism"]
-    found = [one for move in cycle["motion"]["moves"] for one in stretches_of(mechanism, move)]
-    largest = max(one.force for one in found)
+    values = [one for move in cycle["motion"]["moves"] for one in stretches_of(mechanism, move)]
+    largest = max(one.force for one in values)
     radial, axial, beta = [], [], math.radians(load["rack_helix_deg"])
-    for one in found:
+    for one in values:
         if mechanism["type"] == "belt":
             own = load["belt_tension_factor"] * largest, 0.0
         else:
@@ -193,11 +193,11 @@ def expected_of(application: Json) -> tuple[list[Stretch], float, float, float]:
         radial.append(own[0] + abs(load.get("radial_N", 0)))
         axial.append(own[1] + abs(load.get("axial_N", 0)))
     P = [r / LIMITS[0] + a / LIMITS[1] for r, a in zip(radial, axial, strict=True)]
-    ways = [one.way for one in found]
+    ways = [one.way for one in values]
     mean = (sum(way * p**3 for way, p in zip(ways, P, strict=True)) / sum(ways)) ** (1 / 3) * load["load_coefficient"]
     turns = sum(ways) / (math.pi * mechanism["diameter_mm"])
-    n_av = 60 * turns / (sum(one.time for one in found) + cycle["pause_s"])
-    return found, max(radial), mean, 20_000 * (100 / n_av) / mean**3
+    n_av = 60 * turns / (sum(one.time for one in values) + cycle["pause_s"])
+    return values, max(radial), mean, 20_000 * (100 / n_av) / mean**3
 
 
 @pytest.mark.parametrize("part", range(3))

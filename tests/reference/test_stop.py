@@ -35,8 +35,8 @@ def test_a_swivel_is_stopped_as_worked_out(
     reserve = gear["reserve"]
 
     assert gear["stop_torque_Nm"] == pytest.approx(T_k, rel=5e-6)
-    found = [gear[name] for name in ("stopping_time_s", "stopping_angle_deg", "stop_energy_J")]
-    assert found == pytest.approx(list(course), rel=5e-6)
+    values = [gear[name] for name in ("stopping_time_s", "stopping_angle_deg", "stop_energy_J")]
+    assert values == pytest.approx(list(course), rel=5e-6)
     assert [reserve[name] for name in ("brake_torque_Nm", "brake_torque_repeated_Nm")] == pytest.approx(
         list(largest), rel=5e-6
     )
@@ -52,6 +52,6 @@ def test_a_slow_axis_with_losses_is_stopped_as_worked_out(catalogue: Catalogue) 
 
     assert gear["stop_torque_Nm"] == pytest.approx(203.860, abs=5e-4)
     assert gear["momentary_peak_count"] == 657_093
-    found = [gear[name] for name in ("stopping_time_s", "stopping_angle_deg", "stop_energy_J")]
-    assert found == pytest.approx([0.187258, 43.0275, 38.4598], rel=5e-6)
+    values = [gear[name] for name in ("stopping_time_s", "stopping_angle_deg", "stop_energy_J")]
+    assert values == pytest.approx([0.187258, 43.0275, 38.4598], rel=5e-6)
     assert gear["reserve"]["brake_torque_Nm"] == pytest.approx(4.06983, abs=5e-6)

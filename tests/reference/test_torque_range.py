@@ -59,8 +59,8 @@ INDEXED: Json = {
 def test_worked_position_errors_of_motions(
     catalogue: Catalogue, motion: Json, gear: str, at: str, error_arcmin: float
 ) -> None:
-    asked = {"duty_cycle": {"motion": motion}, "requirements": {"position_error_at": at}}
-    error = candidate(answer(asked, catalogue), gear)["position_error_arcmin"]
+    document = {"duty_cycle": {"motion": motion}, "requirements": {"position_error_at": at}}
+    error = candidate(answer(document, catalogue), gear)["position_error_arcmin"]
     assert error == pytest.approx(error_arcmin, abs=5e-5)  # as printed
 
 
@@ -126,15 +126,15 @@ def test_a_motion_winds_the_gear_up_as_far_as_its_samples_and_never_less(catalog
         cycle = at_random(chance)
         rests = bool(cycle["pause_s"]) or any(move["profile"] == "dwell" for move in cycle["motion"]["moves"])
         for at in ("cycle", "rest")[: 1 + rests]:
-            asked = {"duty_cycle": cycle, "requirements": {"position_error_at": at, "ratios": [5], "sizes": ["20A"]}}
-            found = [torque.item() for torque in Duty.of([Application.model_validate(asked)]).torque_range_Nm]
+            document = {"duty_cycle": cycle, "requirements": {"position_error_at": at, "ratios": [5], "sizes": ["20A"]}}
+            values = [torque.item() for torque in Duty.of([Application.model_validate(document)]).torque_range_Nm]
             low, high = torque_range(cycle, at_rest=at == "rest")
             room = 1e-5 * max(abs(low), abs(high), 1e-3)
-            assert low - room <= found[0] <= low + 1e-6 * room, (cycle, at)
-            assert high + room >= found[1] >= high - 1e-6 * room, (cycle, at)
+            assert low - room <= values[0] <= low + 1e-6 * room, (cycle, at)
+            assert high + room >= values[1] >= high - 1e-6 * room, (cycle, at)
             if min(abs(low), abs(high)) < room:  # whether the torque passes 0 is left to rounding
                 continue
-            error = candidate(answer(asked, catalogue), gear.designation)["position_error_arcmin"]
+            error = candidate(answer(document, catalogue), gear.designation)["position_error_arcmin"]
             assert gear.torsional_stiffness_Nm_per_rad and gear.transmission_accuracy_arcmin and gear.backlash_arcmin
             per_Nm = 10800 / math.pi / gear.torsional_stiffness_Nm_per_rad
             least = gear.transmission_accuracy_arcmin + (high - low) * per_Nm

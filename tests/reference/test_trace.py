@@ -21,9 +21,9 @@ MOTIONS = pytest.mark.parametrize("motion", [CONTRACT, PENDULUM, SCREW, VISCOUS]
 
 
 def course_of(motion: Json) -> Course:
-    found = Application.model_validate({"duty_cycle": {"motion": motion}}).duty_cycle.motion
-    assert found is not None
-    return found.course
+    application = Application.model_validate({"duty_cycle": {"motion": motion}}).duty_cycle.motion
+    assert application is not None
+    return application.course
 
 
 def stretches(motion: Json) -> list[reference.Stretch]:
@@ -40,13 +40,13 @@ def inside(trace: Trace, motion: Json) -> list[tuple[reference.Stretch, tuple[in
 
     At the ends of pieces the reference may stand on the other side of a jump.
     """
-    found, begun = [], 0.0
+    result, begun = [], 0.0
     for place, phase in enumerate(trace.phase):
         one = stretches(motion)[phase]
         if place and one.move != stretches(motion)[trace.phase[place - 1]].move:
             begun = trace.time_s.item(place, 0)
-        found += [(one, (place, k), mpf(trace.time_s.item(place, k) - begun)) for k in (3, 10)]
-    return found
+        result += [(one, (place, k), mpf(trace.time_s.item(place, k) - begun)) for k in (3, 10)]
+    return result
 
 
 @MOTIONS
@@ -92,8 +92,8 @@ def test_the_motors_trace_is_on_its_curve_and_holds_the_peak_that_the_check_goes
     trace, torque = motor_trace(
         course_of(motion), ratio=ratio, efficiency=np.array([0.85]), motor_inertia_kgm2=MOTOR_INERTIA
     )
-    asked = {"efficiency": 0.85, "motor": {"inertia_kgm2": MOTOR_INERTIA}, "sizes": ["20A"], "ratios": [ratio]}
-    reply = answer({"duty_cycle": {"motion": motion}, "requirements": asked}, catalogue)
+    document = {"efficiency": 0.85, "motor": {"inertia_kgm2": MOTOR_INERTIA}, "sizes": ["20A"], "ratios": [ratio]}
+    reply = answer({"duty_cycle": {"motion": motion}, "requirements": document}, catalogue)
 
     peak = candidate(reply, f"HPN-20A-{ratio}")["motor_peak_torque_Nm"]
     assert math.isclose(np.abs(torque).max(), peak, rel_tol=CLOSE)

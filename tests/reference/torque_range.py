@@ -18,14 +18,14 @@ G = 9.80665
 def torque_range(cycle: Json, *, at_rest: bool = False, count: int = 2000) -> tuple[float, float]:
     """T_lo and T_hi in Nm at the gear, of samples of the cycle or of its rest."""
     motion = cycle["motion"]
-    mechanism, theta, found = motion["mechanism"], float(motion.get("start_deg", 0)), list[Any]()
+    mechanism, theta, result = motion["mechanism"], float(motion.get("start_deg", 0)), list[Any]()
     eta, ratio, friction = mechanism.get("efficiency", 1), mechanism.get("ratio", 1), dry_friction(mechanism)
     for move in motion["moves"]:
         way = float(move.get("angle_deg") or move.get("distance_mm") or 0)
         if not way:
-            held = float(_load(mechanism, move, np.array([theta]), np.zeros(1), np.zeros(1), 0.0)[0])
-            R = ((abs(held) + friction) / eta - abs(held)) / ratio
-            found += [held / ratio - R, held / ratio + R]
+            value_held = float(_load(mechanism, move, np.array([theta]), np.zeros(1), np.zeros(1), 0.0)[0])
+            R = ((abs(value_held) + friction) / eta - abs(value_held)) / ratio
+            result += [value_held / ratio - R, value_held / ratio + R]
         elif not at_rest:
             T = np.concatenate(
                 [
@@ -33,11 +33,11 @@ def torque_range(cycle: Json, *, at_rest: bool = False, count: int = 2000) -> tu
                     for x, v, a in _stretches(move, way, mechanism["type"] == "rotary", count)
                 ]
             )
-            found.append(T * np.where(np.sign(way) * T > 0, 1 / eta, eta) / ratio)
+            result.append(T * np.where(np.sign(way) * T > 0, 1 / eta, eta) / ratio)
         theta += move.get("angle_deg", 0)
     if cycle.get("pause_s"):
-        found += [-friction / (eta * ratio), friction / (eta * ratio)]
-    every = np.concatenate([np.atleast_1d(each) for each in found])
+        result += [-friction / (eta * ratio), friction / (eta * ratio)]
+    every = np.concatenate([np.atleast_1d(each) for each in result])
     return float(every.min()), float(every.max())
 
 

@@ -69,9 +69,9 @@ def load(proxy: Proxy, rate: float, seconds: float) -> Outcome:
     """Outcome of load from a process of its own."""
     certificate = str(proxy.folder / "fullchain.pem")
     command = [sys.executable, "-m", "tests.reliability.load", str(proxy.https), str(rate), str(seconds), certificate]
-    done = subprocess.run(command, check=True, capture_output=True, timeout=seconds + 120)
-    found = json.loads(done.stdout)
-    return Outcome(**found | {"statuses": {int(status): n for status, n in found["statuses"].items()}})
+    outcome = subprocess.run(command, check=True, capture_output=True, timeout=seconds + 120)
+    result = json.loads(outcome.stdout)
+    return Outcome(**result | {"statuses": {int(status): n for status, n in result["statuses"].items()}})
 
 
 async def _ask(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> int:

@@ -49,9 +49,9 @@ def quiet(tmp_path: Path) -> Iterator[Front]:
 
 def capacity(front: Front, seconds: float) -> float:
     """Small calculations in a second."""
-    found = load(front.proxy, 0, seconds)
-    assert found.others == 0
-    return found.answered / found.seconds
+    result = load(front.proxy, 0, seconds)
+    assert result.others == 0
+    return result.answered / result.seconds
 
 
 def memory_MB(service: Service) -> float:
@@ -66,17 +66,17 @@ def test_beyond_capacity_answers_come_soon_and_the_rest_is_refused_at_once(
     most = min(capacity(quiet, SPELL_SECONDS if soak else 1) for _ in range(10 if soak else 1))
     seconds = 60 if soak else 1
     shares = {"unloaded": 0.1, "once": 1, "twice": 2, "four times": 4, "half": 0.5}
-    found = {name: load(quiet.proxy, share * most, seconds) for name, share in shares.items()}
-    for name, outcome in found.items():
+    by_name = {name: load(quiet.proxy, share * most, seconds) for name, share in shares.items()}
+    for name, outcome in by_name.items():
         record_property(name, repr(outcome))  # a worker of pytest sends plain values alone
         print(f"{name}: {outcome.share_refused:.1%} refused, {outcome}")
 
-    assert found["unloaded"].refused == 0
-    assert found["once"].refused == found["half"].refused == 0 or not soak  # beside others it is more
-    assert sum(outcome.others for outcome in found.values()) == 0
-    for outcome in found.values():
+    assert by_name["unloaded"].refused == 0
+    assert by_name["once"].refused == by_name["half"].refused == 0 or not soak  # beside others it is more
+    assert sum(outcome.others for outcome in by_name.values()) == 0
+    for outcome in by_name.values():
         assert outcome.answered
-        assert outcome.p99 < found["unloaded"].p50 * RATIO * (1 if soak else NOISE)
+        assert outcome.p99 < by_name["unloaded"].p50 * RATIO * (1 if soak else NOISE)
 
 
 def test_exports_and_batches_leave_room_for_small_calculations(quiet: Front, soak: bool) -> None:

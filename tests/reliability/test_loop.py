@@ -203,17 +203,17 @@ def held_by(service: Service, asked: Hostile) -> tuple[httpx.Response, float]:
 def test_no_request_holds_the_event_loop(beating: Service, soak: bool, record_property: Any) -> None:
     saved = beating.client.post("/api/v1/selections", json={"application": LONG if soak else QUARTER}).json()["id"]
     longest: dict[str, float] = {}
-    for asked in hostile(saved, whole=soak):
-        reply, held = held_by(beating, asked)
-        if soak and held > HELD_S:  # what it costs each time, and not what the machine did meanwhile
-            again = [held_by(beating, asked) for _ in range(3)]
-            held = min(held, *[cost for other, cost in again if other.status_code == reply.status_code])
-        name = f"{asked.method} {asked.path[:60]} {len(asked.body)} bytes: {reply.status_code}"
-        longest[name] = max(held, longest.get(name, 0.0))
+    for case in hostile(saved, whole=soak):
+        reply, value_held = held_by(beating, case)
+        if soak and value_held > HELD_S:  # what it costs each time, and not what the machine did meanwhile
+            again = [held_by(beating, case) for _ in range(3)]
+            value_held = min(value_held, *[cost for other, cost in again if other.status_code == reply.status_code])
+        name = f"{case.method} {case.path[:60]} {len(case.body)} bytes: {reply.status_code}"
+        longest[name] = max(value_held, longest.get(name, 0.0))
         assert reply.status_code < 500, name
     worst = sorted(longest.items(), key=lambda entry: -entry[1])[:10]
-    for name, held in worst:
-        record_property(name, round(held, 4))
+    for name, value_held in worst:
+        record_property(name, round(value_held, 4))
     print("\n".join(f"{1000 * held:6.1f} ms  {name}" for name, held in worst))
 
     assert worst[0][1] < (HELD_S if soak else BESIDE_OTHERS_S), worst
@@ -221,7 +221,7 @@ def test_no_request_holds_the_event_loop(beating: Service, soak: bool, record_pr
 
 def test_the_table_of_hostile_requests_has_every_route(tmp_path: Path) -> None:
     app = create_app(Settings(database_url=f"sqlite:///{tmp_path}/store.sqlite3"))
-    asked = {(request.method, request.path.partition("?")[0]) for request in hostile("{id}", whole=False)}
+    names = {(request.method, request.path.partition("?")[0]) for request in hostile("{id}", whole=False)}
     routes = [route for route in iter_route_contexts(app.routes) if route.methods]
 
     missing = [
@@ -229,7 +229,7 @@ def test_the_table_of_hostile_requests_has_every_route(tmp_path: Path) -> None:
         for route in routes
         for method in route.methods or ()
         if method != "HEAD"
-        and not any(asked_method == method and route.path_regex.match(path) for asked_method, path in asked)
+        and not any(asked_method == method and route.path_regex.match(path) for asked_method, path in names)
     ]
 
     assert missing == []

@@ -92,7 +92,7 @@ def test_a_worker_in_768_MB_outlives_everything_at_once(tmp_path: Path, soak: bo
         proxied(service.port) as proxy,
     ):
         saved = service.client.post("/api/v1/selections", content=b'{"application": %s}' % long, headers=JSON).json()
-        asked = [
+        question = [
             ("POST", "/api/v1/select/batch", batch),
             ("POST", "/api/v1/select/batch", nested),
             ("POST", "/api/v1/select", long),
@@ -102,13 +102,13 @@ def test_a_worker_in_768_MB_outlives_everything_at_once(tmp_path: Path, soak: bo
             ("GET", f"{saved['url']}/copy", b""),
         ]
         if soak:
-            asked.append(("POST", "/api/v1/report.xlsx", long))
+            question.append(("POST", "/api/v1/report.xlsx", long))
         for silent, slow in ((200, 100), (10, 10)) if soak else ((20, 20),):
             peers = unread(proxy, f"/api/v1{saved['url']}", silent)
             peers += half_sent(proxy, 1_900_000, slow)
             threads = [
                 threading.Thread(target=ask, args=(proxy, *one, 10 if soak else 1), daemon=True)
-                for one in asked * (6 if soak else 1)
+                for one in question * (6 if soak else 1)
             ]
             for thread in threads:
                 thread.start()

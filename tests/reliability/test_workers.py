@@ -115,10 +115,10 @@ def test_a_worker_that_cannot_start_is_a_line_of_the_log(surroundings: dict[str,
     file = Path(surroundings["HPN_CATALOGUE_SUPPLEMENT"], "ratings.csv")
     file.rename(file.with_name("Ratings.csv"))
     command = [sys.executable, "-c", "from hpn.web.serve import worker_app; worker_app()"]
-    done = subprocess.run(command, env=os.environ | surroundings, capture_output=True, timeout=120)
+    outcome = subprocess.run(command, env=os.environ | surroundings, capture_output=True, timeout=120)
 
-    assert (done.returncode, done.stderr) == (1, b"")
-    (line,) = done.stdout.splitlines()
+    assert (outcome.returncode, outcome.stderr) == (1, b"")
+    (line,) = outcome.stdout.splitlines()
     assert "Ratings.csv: is not a table of the catalogue" in orjson.loads(line)["event"]
 
 

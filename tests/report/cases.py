@@ -68,10 +68,10 @@ def typed_export_of(
     application: Json, catalogue: Catalogue, *, title: str = "Rotary table", reference: str = ""
 ) -> export.Export:
     """An export as a saved selection gives it."""
-    asked = Application.model_validate(application)
+    question = Application.model_validate(application)
     return export.Export(
-        application=asked,
-        selection=select(asked, catalogue, to_link),
+        application=question,
+        selection=select(question, catalogue, to_link),
         link="http://hpn.example/selections/0123456789abcdefghijkl",
         heading=export.ExportTitle(title, reference),
         created=CREATED,
@@ -116,9 +116,9 @@ class Export:
 
 def export_of(application: Json, catalogue: Catalogue, *, title: str = "Rotary table", reference: str = "") -> Export:
     """An export as a saved selection gives it."""
-    asked = Application.model_validate(application)
-    reply = msgspec.json.decode(encode(select(asked, catalogue, to_link)))
-    return Export(asked, reply, title, reference, catalogue)
+    question = Application.model_validate(application)
+    reply = msgspec.json.decode(encode(select(question, catalogue, to_link)))
+    return Export(question, reply, title, reference, catalogue)
 
 
 def language(code: str) -> Reader:

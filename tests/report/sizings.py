@@ -11,20 +11,20 @@ from tests.build import Json
 def element(name: str, value: object, kind: str = "Property", short: str = "") -> Json:
     """An element of the template in JSON; its short id is of no account."""
     key = {"type": "GlobalReference", "value": f" {meaning(name).strip()} "}
-    held = "statements" if kind == "Entity" else "value"
+    value_held = "statements" if kind == "Entity" else "value"
     return {
         "modelType": kind,
         "idShort": short or name,
         "semanticId": {"type": "ExternalReference", "keys": [key]},
-        held: value,
+        value_held: value,
     }
 
 
 def shell(sections: list[Json], mechanism: Json | None = None, **more: Json) -> Json:
     """An environment with a sizing of these sections."""
     pattern = element("MotionPatternSections", sections, "SubmodelElementCollection")
-    asked = [element("MotionPattern", [pattern], "SubmodelElementCollection"), *more.values()]
-    parts = [element("ApplicationRequirements", asked, "SubmodelElementCollection")]
+    question = [element("MotionPattern", [pattern], "SubmodelElementCollection"), *more.values()]
+    parts = [element("ApplicationRequirements", question, "SubmodelElementCollection")]
     if mechanism:
         parts.append(element("TransformationMechanism", [mechanism], "SubmodelElementCollection"))
     keys = [{"type": "Submodel", "value": SIZING}]
@@ -56,10 +56,10 @@ def section(kind: str, columns: tuple[str, ...], file: str, **constants: object)
 
 def packed(environment: Json, **files: str) -> bytes:
     """A package with an environment in JSON."""
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w") as target:
+    output = io.BytesIO()
+    with zipfile.ZipFile(output, "w") as target:
         target.writestr("aasx/aasx-origin", "")
         target.writestr("aasx/data.json", json.dumps(environment))
         for name, content in files.items():
             target.writestr(f"aasx/{name}.csv", content)
-    return made.getvalue()
+    return output.getvalue()

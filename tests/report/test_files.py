@@ -64,8 +64,8 @@ def test_saved_posted_and_linked_selections_are_files(name: str, client: TestCli
 
 @pytest.mark.parametrize("rank_by", get_args(RankBy))
 def test_page_and_files_open_by_every_ranking(rank_by: RankBy, client: TestClient) -> None:
-    asked = f"{QUERY.removesuffix('&i=5')}&JL=0.8&rank={rank_by}"
-    pages = [client.get(f"/?{asked}"), *(client.get(f"/{name}?{asked}") for name in FILES)]
+    question = f"{QUERY.removesuffix('&i=5')}&JL=0.8&rank={rank_by}"
+    pages = [client.get(f"/?{question}"), *(client.get(f"/{name}?{question}") for name in FILES)]
     assert [page.status_code for page in pages] == [200] * len(pages)
     assert RANKINGS[rank_by].first in html.unescape(pages[0].text)
     assert RANKED_BY.keys() == RANKINGS.keys() == set(get_args(RankBy))
@@ -135,7 +135,7 @@ NONE_FITS = "T=900&n=100&t=1&i=5"
 
 
 @pytest.mark.parametrize(
-    ("query", "said"),
+    ("query", "message"),
     [
         (
             f"{QUERY}&gear=HPN-20A-7",
@@ -152,10 +152,10 @@ NONE_FITS = "T=900&n=100&t=1&i=5"
     ],
 )
 def test_a_chosen_gear_is_neither_called_the_closest_nor_counted_where_it_is_not(
-    client: TestClient, query: str, said: str
+    client: TestClient, query: str, message: str
 ) -> None:
     first = PdfReader(BytesIO(client.get(f"/report.pdf?{query}").content)).pages[0].extract_text()
-    assert said in " ".join(first.replace("\u202f", " ").split())
+    assert message in " ".join(first.replace("\u202f", " ").split())
 
 
 def test_the_title_block_is_of_the_link_or_as_it_was_saved(client: TestClient) -> None:
@@ -166,10 +166,10 @@ def test_the_title_block_is_of_the_link_or_as_it_was_saved(client: TestClient) -
     link = f"{QUERY}&gear=HPN-32A-5&title=Axis+7&ref=4711&author=M.+Muster&rev=B&order_output=J8&order_motor=BH-AF1"
     for address in (f"{saved}/report.pdf", f"/report.pdf?{link}"):
         page = PdfReader(BytesIO(client.get(address).content)).pages[0]
-        found = page.extract_text()
+        result = page.extract_text()
         for text in (*labels.values(), code, "Checks of HPN-32A-5"):
-            assert text in found, (address, text)
-        assert ("Not saved" in found) == ("report.pdf?" in address)
+            assert text in result, (address, text)
+        assert ("Not saved" in result) == ("report.pdf?" in address)
     assert page.annotations is not None
     note = page.annotations[0].get_object()
     opened = client.get(str(note["/A"]["/URI"])).text
@@ -213,10 +213,10 @@ def test_a_package_is_of_metamodel_30_and_of_31_on_request(client: TestClient, s
     ):
         query = "&" + QUERY if path == "/submodel.aasx" else ""
         body = WORKED_EXAMPLE if method == "POST" else None
-        for asked, shown in (("", "3/0"), ("aas=3.0", "3/0"), ("aas=3.1", "3/1")):
-            response = client.request(method, f"{path}?{asked}{query}", json=body)
+        for case, view in (("", "3/0"), ("aas=3.0", "3/0"), ("aas=3.1", "3/1")):
+            response = client.request(method, f"{path}?{case}{query}", json=body)
             content = ZipFile(BytesIO(response.content)).read("aasx/data.xml")
-            assert re.findall(rb'xmlns:aas="https://admin-shell.io/aas/([^"]+)"', content) == [shown.encode()]
+            assert re.findall(rb'xmlns:aas="https://admin-shell.io/aas/([^"]+)"', content) == [view.encode()]
         refused = client.request(method, f"{path}?aas=2{query}", json=body)
         assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/aas")
 
@@ -267,8 +267,8 @@ def test_a_pasted_link_unfolds_into_gear_and_verdict(client: TestClient, saved: 
         (f"/?{QUERY}", "HPN Select: HPN-20A-5, suitable"),
     ):
         document = client.get(path).text
-        found = re.search(r'<meta property="og:title" content="([^"]*)"', document)
-        assert found and html.unescape(found[1]) == title
+        match = re.search(r'<meta property="og:title" content="([^"]*)"', document)
+        assert match and html.unescape(match[1]) == title
         described = re.search(r'<meta property="og:description" content="([^"]*)"', document)
         assert described and described[1].startswith("Average torque ") and ", HPN-20A-5: " in described[1]
 

@@ -58,11 +58,11 @@ def test_a_bracket_behind_a_symbol_is_no_part_of_its_index() -> None:
 
 
 def test_its_figures_are_in_the_units_of_the_reader(catalogue: Catalogue) -> None:
-    shown = content(typed_export_of(MOVING["rotary table"], catalogue), US)
-    texts = {"".join(line["label"]): line["text"] for line in shown["motion"]["mechanism"]}
+    view = content(typed_export_of(MOVING["rotary table"], catalogue), US)
+    texts = {"".join(line["label"]): line["text"] for line in view["motion"]["mechanism"]}
     assert texts["Reibmoment"].startswith("13,2761")
-    assert shown["motion"]["moves"]["header"][-1][1] == "lb·in"
-    assert shown["phases"]["header"][2][1].startswith("lb")
+    assert view["motion"]["moves"]["header"][-1][1] == "lb·in"
+    assert view["phases"]["header"][2][1].startswith("lb")
 
 
 def test_the_motor_that_turns_its_own_inertia_is_named_so(catalogue: Catalogue) -> None:
@@ -75,8 +75,8 @@ def test_the_motor_that_turns_its_own_inertia_is_named_so(catalogue: Catalogue) 
 
 def test_a_listed_motor_stands_with_its_figures(supplemented: Supplement) -> None:
     supplied = supplemented(motors=MOTORS)
-    asked = MOVING["rotary table"] | {"requirements": {"motor": {"designation": "M 8"}}}
-    export = typed_export_of(asked, supplied)
+    question = MOVING["rotary table"] | {"requirements": {"motor": {"designation": "M 8"}}}
+    export = typed_export_of(question, supplied)
     wishes = {"".join(line["label"]): line["text"] for line in content(export, ENGLISH)["requirements"]}
     assert wishes["Motor of your list"] == "M 8"
     assert wishes["Inertia of the motor"].startswith("0.0005")
@@ -87,9 +87,9 @@ def test_a_listed_motor_stands_with_its_figures(supplemented: Supplement) -> Non
 def test_every_move_of_many_is_printed_under_heads(reader: Reader, catalogue: Catalogue) -> None:
     document = pdf(typed_export_of(MOVING["many moves"], catalogue), reader)
     title = reader.text("Each move of the motion")
-    found = pages(document)
-    first = next(k for k, page in enumerate(found) if title in page)
-    numbers = re.findall(r"^ *(\d+) +(?:Modifi|Triang|Dreieck|S-)", "\n".join(found[first:]), re.M)
+    result = pages(document)
+    first = next(k for k, page in enumerate(result) if title in page)
+    numbers = re.findall(r"^ *(\d+) +(?:Modifi|Triang|Dreieck|S-)", "\n".join(result[first:]), re.M)
     assert {int(number) for number in numbers} >= set(range(1, 121))
     assert len(PdfReader(BytesIO(document)).pages) <= 11
 
@@ -116,17 +116,17 @@ def test_phases_that_govern_the_output_bearing_stand_out_in_the_cycle(catalogue:
 
 def test_torque_is_drawn_against_speed_where_a_motion_or_a_motor_is_given(catalogue: Catalogue) -> None:
     def planes(case: str) -> list[dict[str, str]]:
-        found: list[dict[str, str]] = content(typed_export_of((CASES | MOVING)[case], catalogue), ENGLISH)["planes"]
-        return found
+        result: list[dict[str, str]] = content(typed_export_of((CASES | MOVING)[case], catalogue), ENGLISH)["planes"]
+        return result
 
     assert planes("example") == []
     gear, motor = planes("rotary table")
     assert (gear["title"], motor["title"]) == ("Torque and speed at the gear’s output", "Torque and speed at the motor")
     selection = typed_export_of(MOVING["rotary table"], catalogue).selection
     for plane, torque in ((gear, selection.duty.maximum_torque_Nm), (motor, selection.foremost.motor_peak_torque_Nm)):
-        found = re.search(r"Largest torque ([\d.]+)\u202fNm of", plane["alt"])
-        assert found is not None and torque is not None
-        assert math.isclose(float(found[1]), torque, rel_tol=5e-3), plane["alt"]  # three digits
+        match = re.search(r"Largest torque ([\d.]+)\u202fNm of", plane["alt"])
+        assert match is not None and torque is not None
+        assert math.isclose(float(match[1]), torque, rel_tol=5e-3), plane["alt"]  # three digits
     printed = "\n".join(pages(pdf(typed_export_of(MOVING["rotary table"], catalogue), ENGLISH)))
     assert "Torque and speed at the motor" in printed
     assert "include the motor’s own inertia; the gear’s inertia and no-load losses are not published" in "".join(

@@ -12,8 +12,8 @@ from tests.report.cases import CASES, MOVING, typed_export_of
 def result_of(case: str, catalogue: Catalogue) -> dict[str, Any]:
     """Elements of the selection by name."""
     store = environment(typed_export_of((CASES | MOVING)[case], catalogue))
-    [found] = [one for one in store if isinstance(one, model.Submodel) and one.id_short == "SelectionResult"]
-    return {element.id_short or "": element for element in found.submodel_element}
+    [result] = [one for one in store if isinstance(one, model.Submodel) and one.id_short == "SelectionResult"]
+    return {element.id_short or "": element for element in result.submodel_element}
 
 
 def values(collection: Any) -> dict[str, Any]:

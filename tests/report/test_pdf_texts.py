@@ -90,12 +90,12 @@ def test_a_character_that_no_font_has_is_replaced_named_and_kept_in_the_metadata
 
 def test_texts_of_a_supplement_are_shown_or_replaced(supplemented: Supplement) -> None:
     catalogue = supplemented(weights="size,stages,weight_kg,source\n20A,1,3.6,测试 бланк བོ\n")
-    found = every_page(pdf(typed_export_of(CASES["example"], catalogue), ENGLISH))
-    assert "测试 бланк □□" in found
+    result = every_page(pdf(typed_export_of(CASES["example"], catalogue), ENGLISH))
+    assert "测试 бланк □□" in result
 
 
 @pytest.mark.parametrize(
-    ("letters", "said"),
+    ("letters", "message"),
     [
         (100, "Not saved: the link carries every input."),
         (1900, "Not saved: the link carries every input."),
@@ -103,12 +103,12 @@ def test_texts_of_a_supplement_are_shown_or_replaced(supplemented: Supplement) -
     ],
 )
 def test_a_report_that_is_not_saved_says_what_carries_its_inputs_on_paper(
-    letters: int, said: str, catalogue: Catalogue
+    letters: int, message: str, catalogue: Catalogue
 ) -> None:
     link = "http://hpn.example/?T=" + "4" * letters
     document = pdf(replace(typed_export_of(CASES["example"], catalogue), link=link, created=None), ENGLISH)
     pages = [by_pdfium(document, page) for page in (0, 1)]
-    assert any(said in page.replace("\r\n", " ") for page in pages)
+    assert any(message in page.replace("\r\n", " ") for page in pages)
     assert (link in "".join(pages).replace("\r\n", "")) == (letters < 2000), "a printed link is whole or not there"
     with pikepdf.open(BytesIO(document)) as opened:
         notes = [note for page in opened.pages for note in page.get("/Annots", pikepdf.Array()).as_list()]
@@ -117,20 +117,20 @@ def test_a_report_that_is_not_saved_says_what_carries_its_inputs_on_paper(
 
 
 def test_a_near_miss_by_the_users_own_utilisation_says_so(catalogue: Catalogue) -> None:
-    asked = worked_example(requirements={"utilisation": 0.5})
-    misses = content(typed_export_of(asked, catalogue), ENGLISH)["alternatives"]["misses"]
+    application = worked_example(requirements={"utilisation": 0.5})
+    misses = content(typed_export_of(application, catalogue), ENGLISH)["alternatives"]["misses"]
     assert misses
     assert "× 50\N{NARROW NO-BREAK SPACE}%" in misses[0][1][0]
     whole = content(typed_export_of(worked_example(), catalogue), ENGLISH)["alternatives"]["misses"]
-    assert "×" not in "".join("".join(part) for _, said in whole for part in said)
+    assert "×" not in "".join("".join(part) for _, message in whole for part in message)
 
 
 @pytest.mark.parametrize("phases", [1, 8])
 def test_the_printed_link_copies_as_it_is(phases: int, catalogue: Catalogue) -> None:
     """Lines may end inside the link, but nothing stands in it that was not in the link."""
-    asked = worked_example() | cycle(*(phase(10.25 + k, 100.5, 0.125) for k in range(phases)))
-    link = "http://hpn.example:8443" + to_link(Application.model_validate(asked))
-    document = pdf(replace(typed_export_of(asked, catalogue), link=link), GERMAN)
+    application = worked_example() | cycle(*(phase(10.25 + k, 100.5, 0.125) for k in range(phases)))
+    link = "http://hpn.example:8443" + to_link(Application.model_validate(application))
+    document = pdf(replace(typed_export_of(application, catalogue), link=link), GERMAN)
     for text in (by_pypdf(document, 0), by_pdfium(document, 0)):
         assert link in re.sub(r"\r?\n", "", text)
         assert not UNSEEN.search(text)
@@ -148,15 +148,18 @@ def test_a_link_that_an_older_report_broke_reads_as_it_was_meant(unseen: str) ->
 
 
 def test_every_phase_of_a_long_cycle_is_printed_under_heads_on_numbered_pages(catalogue: Catalogue) -> None:
-    asked = long_cycle(700, output_load={"radial_N": 300})
-    export = typed_export_of(asked, catalogue)
+    question = long_cycle(700, output_load={"radial_N": 300})
+    export = typed_export_of(question, catalogue)
     document = pdf(export, GERMAN)
     pages = [by_pdfium(document, page) for page in range(len(PdfReader(BytesIO(document)).pages))]
     first = next(k for k, page in enumerate(pages) if "Jede Phase des Lastzyklus" in page)
     rows = iter(row for page in pages[first:] for row in re.findall(r"^ *(\d+) +(\S+) +(\S+) +(\S+)\r?$", page, re.M))
-    for number, given in enumerate(export.application.duty_cycle.load_phases, 1):
-        shown = (str(number), *(GERMAN.exact(value) for value in (given.torque_Nm, given.speed_rpm, given.duration_s)))
-        assert next(rows) == shown
+    for number, inputs in enumerate(export.application.duty_cycle.load_phases, 1):
+        view = (
+            str(number),
+            *(GERMAN.exact(value) for value in (inputs.torque_Nm, inputs.speed_rpm, inputs.duration_s)),
+        )
+        assert next(rows) == view
     for number, page in enumerate(pages, 1):
         assert f"Seite {number} von {len(pages)}" in page
         assert number <= first or "n [min⁻¹]" in page
@@ -171,13 +174,15 @@ def test_the_document_is_sound_and_its_phases_are_tagged(catalogue: Catalogue) -
 
 
 @pytest.mark.parametrize(
-    ("code", "said"), [("en", "not in this catalogue’s source"), ("de", "fehlen in der Quelle dieses Katalogs")]
+    ("code", "message"), [("en", "not in this catalogue’s source"), ("de", "fehlen in der Quelle dieses Katalogs")]
 )
-def test_a_chosen_gear_without_figures_lacks_them_in_this_catalogue(catalogue: Catalogue, code: str, said: str) -> None:
+def test_a_chosen_gear_without_figures_lacks_them_in_this_catalogue(
+    catalogue: Catalogue, code: str, message: str
+) -> None:
     export = replace(typed_export_of(worked_example(), catalogue), chosen="HPN-40A-5")
     text = json.dumps(content(export, language(code)), ensure_ascii=False)
 
-    assert f"{said}. HPN-20A-4" in text
+    assert f"{message}. HPN-20A-4" in text
 
 
 MEASURE = """

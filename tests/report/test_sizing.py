@@ -56,8 +56,8 @@ def sized(application: Json, known: Catalogue, **changes: Any) -> Sized:
 
 def part(submodel: model.Submodel, *path: str) -> dict[str, Any]:
     """Elements of a collection or an entity of it, by short id."""
-    found: Any = submodel.get_referable(list(path))
-    return {str(one.id_short): one for one in (found.statement if isinstance(found, model.Entity) else found.value)}
+    result: Any = submodel.get_referable(list(path))
+    return {str(one.id_short): one for one in (result.statement if isinstance(result, model.Entity) else result.value)}
 
 
 def values(elements: dict[str, Any]) -> dict[str, Any]:
@@ -186,11 +186,11 @@ def test_utilisations_life_and_messages_are_those_of_the_answer(catalogue: Catal
     assert (motor["MainComponentType"], motor["ManufacturerName"]) == ("Motor", "not given")
     assert motor["RmsOfMotorTorque"] == export.candidate.motor_rated_torque_Nm
     messages = part(submodel, "SizingResult", "Messages").values()
-    told = [{one.id_short: one.value for one in message} for message in messages]
-    assert [message["CriticalityOfMessage"] for message in told] == ["Information"] * len(told)
+    rows = [{one.id_short: one.value for one in message} for message in messages]
+    assert [message["CriticalityOfMessage"] for message in rows] == ["Information"] * len(rows)
     english = Reader(digits=DIGITS)
     notices = [english.sentence(notice.sentence) for notice in export.selection.notices]
-    assert [message["MessageText"]["en"] for message in told[1:]] == notices
+    assert [message["MessageText"]["en"] for message in rows[1:]] == notices
 
 
 @pytest.mark.parametrize(
@@ -224,8 +224,8 @@ def test_what_a_kept_answer_lacks_is_left_out(catalogue: Catalogue) -> None:
     reply = msgspec.json.decode(encode(export.selection))
     for candidate in reply["candidates"]:
         del candidate["life_L10_h"]
-    kept = decode(msgspec.json.encode(reply))
+    record = decode(msgspec.json.encode(reply))
 
-    submodel, _ = sized(worked_example(), catalogue, selection=kept, catalogue=None)
+    submodel, _ = sized(worked_example(), catalogue, selection=record, catalogue=None)
 
     assert "CalculatedServiceLife" not in part(submodel, "SizingResult", "MainComponent_1")

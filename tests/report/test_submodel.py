@@ -73,15 +73,15 @@ def test_package_says_what_the_reply_says(case: str, catalogue: Catalogue) -> No
     assert isinstance(checks, model.SubmodelElementCollection)
     for check in export.candidate.checks:
         known = {name: value for name, value in msgspec.to_builtins(check).items() if value is not None}
-        shown = values(checks.get_referable(known.pop("code")))
-        assert {name: shown[name] for name in known} == known
-        assert set(shown) <= {*known, "unit"}
+        view = values(checks.get_referable(known.pop("code")))
+        assert {name: view[name] for name in known} == known
+        assert set(view) <= {*known, "unit"}
     saved = BytesIO()
     files.write_file("/aasx/result.json", saved)
     assert decode(saved.getvalue()) == export.selection
-    asked = BytesIO()
-    files.write_file("/aasx/application.json", asked)
-    assert Application.model_validate_json(asked.getvalue()) == export.application
+    question = BytesIO()
+    files.write_file("/aasx/application.json", question)
+    assert Application.model_validate_json(question.getvalue()) == export.application
 
 
 def test_package_holds_a_saved_reply_to_the_byte(catalogue: Catalogue) -> None:
@@ -111,11 +111,11 @@ def test_package_is_valid_by_an_independent_implementation(case: str, metamodel:
 def test_package_passes_the_test_engines_of_IDTA(case: str, catalogue: Catalogue) -> None:
     """They check package, metamodel and constraints, and read 3.0 alone."""
     hostile = "<&> \U0001f600 བོ"
-    given = typed_export_of(CASES[case], catalogue, title=hostile, reference=hostile)
+    inputs = typed_export_of(CASES[case], catalogue, title=hostile, reference=hostile)
     check: Any = check_aasx_file  # its annotation asks for text, of which no package is made
-    result = check(BytesIO(package(given)))
+    result = check(BytesIO(package(inputs)))
     assert result.ok(), vars(result)
-    assert not check(BytesIO(package(given, "3.1"))).ok()
+    assert not check(BytesIO(package(inputs, "3.1"))).ok()
 
 
 @pytest.mark.parametrize("case", ["example", "everything", "rotary table"])
@@ -171,24 +171,24 @@ def test_article_number_and_order_code_say_what_they_are(catalogue: Catalogue) -
     technical = read(package(typed_export_of(EVERYTHING, catalogue), "3.1"))[0]["TechnicalData"]
     general = technical.get_referable("GeneralInformation")
     assert isinstance(general, model.SubmodelElementCollection)
-    said: dict[str, Any] = {
+    names: dict[str, Any] = {
         name: general.get_referable(f"Manufacturer{name}").description for name in ("ArticleNumber", "OrderCode")
     }
-    assert said == {"ArticleNumber": ARTICLE_NUMBER, "OrderCode": ORDER_CODE}
+    assert names == {"ArticleNumber": ARTICLE_NUMBER, "OrderCode": ORDER_CODE}
 
 
 def test_data_are_valid_from_the_day_they_were_saved(catalogue: Catalogue) -> None:
     """A selection that is not saved has no date."""
     export = typed_export_of(EVERYTHING, catalogue)
-    for created, shown in ((datetime(2026, 3, 1, 1, tzinfo=timezone(timedelta(hours=2))), "2026-02-28"), (None, None)):
+    for created, view in ((datetime(2026, 3, 1, 1, tzinfo=timezone(timedelta(hours=2))), "2026-02-28"), (None, None)):
         technical = read(package(replace(export, created=created), "3.1"))[0]["TechnicalData"]
         further = [one for one in technical.submodel_element if one.id_short == "FurtherInformation"]
-        assert [str(values(one)["ValidDate"]) for one in further] == ([shown] if shown else [])
+        assert [str(values(one)["ValidDate"]) for one in further] == ([view] if view else [])
 
 
 def test_what_is_not_saved_is_valid_from_the_day_of_its_making(catalogue: Catalogue) -> None:
-    made = datetime(2026, 3, 1, 13, 30, tzinfo=timezone(timedelta(hours=2)))
-    export = replace(typed_export_of(EVERYTHING, catalogue), created=None, moment=made)
+    output = datetime(2026, 3, 1, 13, 30, tzinfo=timezone(timedelta(hours=2)))
+    export = replace(typed_export_of(EVERYTHING, catalogue), created=None, moment=output)
     submodels = read(package(export, "3.1"))[0]
     assert str(values(submodels["TechnicalData"].get_referable("FurtherInformation"))["ValidDate"]) == "2026-03-01"
     information = values(submodels["PowerDriveTrainSizing"].get_referable("SizingProjectInformation"))
@@ -206,8 +206,8 @@ def test_a_figure_that_is_not_published_is_left_out(catalogue: Catalogue) -> Non
 def test_motor_torques_without_an_efficiency_are_described_as_a_lower_bound(
     efficiency: float | None, catalogue: Catalogue
 ) -> None:
-    asked = worked_example(requirements={"efficiency": efficiency})
-    submodels, _ = read(package(typed_export_of(asked, catalogue), "3.1"))
+    application = worked_example(requirements={"efficiency": efficiency})
+    submodels, _ = read(package(typed_export_of(application, catalogue), "3.1"))
     figures = submodels["SelectionResult"].get_referable("Figures")
     assert isinstance(figures, model.SubmodelElementCollection)
     for name in ("motor_peak_torque_Nm", "motor_rated_torque_Nm"):

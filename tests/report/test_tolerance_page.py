@@ -21,14 +21,14 @@ WIDE: Json = worked_example(tolerances={"torque_Nm": {"percent": 5}, STOP: {"per
 def test_the_page_has_each_worst_case_and_what_decides(code: str, catalogue: Catalogue) -> None:
     """T_k of 200 Nm ± 40 % reaches 280 Nm, 109.4 % of 256 Nm, which 28 % leave: 200 · 1.28 = 256."""
     export, reader = typed_export_of(WIDE, catalogue), language(code)
-    shown = content(export, reader)["tolerances"]
-    row = next(row for row in shown["checks"] if row["share"] == 280 / 256)
+    view = content(export, reader)["tolerances"]
+    row = next(row for row in view["checks"] if row["share"] == 280 / 256)
     text = " ".join(PdfReader(BytesIO(pdf(export, reader))).pages[-1].extract_text().split())
 
     assert (row["worst"], row["given"]) == ("280\u202fNm", "200\u202fNm")
     assert [("T", "k")] in row["case"][0][1]
     falls = f"{reader.percent(280 / 256)} → {reader.percent(200 / 256)}"
-    assert shown["inputs"][0][2:] == [
+    assert view["inputs"][0][2:] == [
         "±40\u202f%",
         falls,
         "±28\u202f%",

@@ -76,8 +76,8 @@ def test_every_candidate_has_the_numbers_of_the_reply_with_all_their_digits(case
         for name in FIGURES:
             symbol = figure_symbol(name, adds_at_motor=selection.adds_at_motor) or CANDIDATE[name].name
             unit = ENGLISH.unit(suffix_of(name))
-            shown = row.get(f"{symbol} [{unit}]" if unit else symbol)
-            assert shown == getattr(gear, name) or (shown == "unlimited" and getattr(gear, name) is None), name
+            view = row.get(f"{symbol} [{unit}]" if unit else symbol)
+            assert view == getattr(gear, name) or (view == "unlimited" and getattr(gear, name) is None), name
 
 
 @pytest.mark.parametrize("case", SMALL)
@@ -103,13 +103,13 @@ def test_inputs_are_those_of_the_application(case: str, catalogue: Catalogue) ->
     export = typed_export_of(SMALL[case], catalogue)
     book = opened(export)
 
-    shown = {row[0]: row[2] for row in rows(book, "Inputs") if row[0]}
-    said = {line.code: line.value for line in (*export.account.loads, *export.account.requirements)}
+    by_name = {row[0]: row[2] for row in rows(book, "Inputs") if row[0]}
+    values = {line.code: line.value for line in (*export.account.loads, *export.account.requirements)}
     for path in (*LOADS, *REQUIREMENTS):
-        if path not in said:
-            assert INPUTS[path].name not in shown, path
-        elif isinstance(said[path], float):
-            assert shown[INPUTS[path].name] == said[path], path
+        if path not in values:
+            assert INPUTS[path].name not in by_name, path
+        elif isinstance(values[path], float):
+            assert by_name[INPUTS[path].name] == values[path], path
     phases = export.application.duty_cycle.load_phases
     place = [row[0] for row in rows(book, "Inputs")].index("Duty cycle") + 2
     table = rows(book, "Inputs")[place : place + len(phases)]
@@ -158,10 +158,10 @@ def assert_agrees(book: Workbook, reply: Json, gear: str) -> None:
         "Permitted emergency stops": judged["momentary_peak_count"],
     }
     sheet = [row for row in rows(book, "Equations") if row[0]]
-    found = {row[0]: row[2] for row in reversed(sheet)}  # names of figures stand above those of checks
+    by_name = {row[0]: row[2] for row in reversed(sheet)}  # names of figures stand above those of checks
     for name, value in figures.items():
-        shown = found[name]
-        assert (value is None and shown in (None, "", "unlimited")) or math.isclose(shown, value, rel_tol=1e-12), name
+        view = by_name[name]
+        assert (value is None and view in (None, "", "unlimited")) or math.isclose(view, value, rel_tol=1e-12), name
     definitions = reply["check_definitions"]
     for check in judged["checks"]:
         lines = [row for row in sheet if row[0] == definitions[check["code"]]["title"] and row[6]]
@@ -177,8 +177,8 @@ def test_the_printed_equations_recalculate_to_what_select_answers(
     changed = cycle(
         phase(55, 250, 0.3), phase(-32, 500, 3), phase(20, 250, 0.4), pause_s=1, emergency_stop={"torque_Nm": -180}
     )
-    asked = {name: case for name, case in SMALL.items() if name not in ("extremes", "not rated")}
-    exports = {name: typed_export_of(case, catalogue) for name, case in asked.items()}
+    by_name = {name: case for name, case in SMALL.items() if name not in ("extremes", "not rated")}
+    exports = {name: typed_export_of(case, catalogue) for name, case in by_name.items()}
     books = {name: opened(export, values=False) for name, export in exports.items()}
     books["changed"] = opened(exports["example"], values=False)
     put(books["changed"], "Pause", 1)
@@ -187,7 +187,7 @@ def test_the_printed_equations_recalculate_to_what_select_answers(
     put(books["changed"], "Phase", -32, 2, 2)
     fresh = recalculate(books)
 
-    for name, case in asked.items():
+    for name, case in by_name.items():
         assert_agrees(fresh[name], answer(case, catalogue), exports[name].candidate.designation)
         saved = [cell for row in rows(opened(exports[name]), "Equations") for cell in row if isinstance(cell, float)]
         again = [cell for row in rows(fresh[name], "Equations") for cell in row if isinstance(cell, int | float)]
@@ -219,25 +219,25 @@ def test_german_workbook_has_the_same_numbers_and_the_page_s_units(catalogue: Ca
         pairs = zip(own.iter_rows(values_only=True), other.iter_rows(values_only=True), strict=True)
         for row, again in pairs:
             assert [cell for cell in row if isinstance(cell, float)] == [c for c in again if isinstance(c, float)]
-    shown = [sheet for sheet in german if sheet.sheet_state == "visible"]
-    texts = [cell for sheet in shown for row in sheet.iter_rows(values_only=True) for cell in row if cell]
+    values = [sheet for sheet in german if sheet.sheet_state == "visible"]
+    texts = [cell for sheet in values for row in sheet.iter_rows(values_only=True) for cell in row if cell]
     assert "n [min⁻¹]" in texts
     assert not [text for text in texts if isinstance(text, str) and re.search(r"\brpm\b", text)]
 
 
 def test_a_motion_stands_with_mechanism_moves_and_phases(catalogue: Catalogue) -> None:
     book = opened(typed_export_of(MOVING["rotary table"], catalogue), GERMAN)
-    shown = [[cell for cell in row if cell is not None] for row in book["Eingaben"].iter_rows(values_only=True)]
+    values = [[cell for cell in row if cell is not None] for row in book["Eingaben"].iter_rows(values_only=True)]
 
-    assert ["Mechanismus", "Drehachse"] in shown
-    assert ["Trägheitsmoment", "J", 0.8, "kg·m²"] in shown
-    assert ["1 turn", "Trapez", 90, 0.8, 900] in shown
+    assert ["Mechanismus", "Drehachse"] in values
+    assert ["Trägheitsmoment", "J", 0.8, "kg·m²"] in values
+    assert ["1 turn", "Trapez", 90, 0.8, 900] in values
 
 
 def test_a_motor_torque_says_that_it_is_a_lower_bound(catalogue: Catalogue) -> None:
-    for efficiency, told in ((None, LOWER_BOUND), (0.9, None)):
+    for efficiency, notice in ((None, LOWER_BOUND), (0.9, None)):
         export = typed_export_of(worked_example(requirements={"efficiency": efficiency}), catalogue)
-        assert line(opened(export), "Selection", CANDIDATE["motor_peak_torque_Nm"].name)[4] == told
+        assert line(opened(export), "Selection", CANDIDATE["motor_peak_torque_Nm"].name)[4] == notice
 
 
 @pytest.mark.parametrize(
@@ -247,8 +247,8 @@ def test_a_motor_torque_is_a_lower_bound_without_an_efficiency_and_none_beyond_a
     supplemented: Supplement, torque: float, efficiency: float | None, bound: bool
 ) -> None:
     curve = "size,ratio,torque_Nm,efficiency,source\n20A,5,10,0.5,p\n20A,5,40,0.85,p\n20A,5,80,0.9,p\n"
-    asked = cycle(phase(0, 100), phase(-torque, 9), requirements={"efficiency": efficiency})
-    export = typed_export_of(asked, supplemented(efficiency=curve))
+    question = cycle(phase(0, 100), phase(-torque, 9), requirements={"efficiency": efficiency})
+    export = typed_export_of(question, supplemented(efficiency=curve))
     gears = {gear.designation: gear for gear in export.selection.candidates}
     assert {name: export.account.of(gears[name]).is_lower_bound for name in ("HPN-20A-5", "HPN-20A-4")} == {
         "HPN-20A-5": bound,
@@ -264,8 +264,8 @@ def test_figures_of_another_catalogue_are_not_used(catalogue: Catalogue, supplem
     assert "Equations" not in book.sheetnames
     assert "not kept" in line(book, "Selection", "Catalogue")[1]
     assert not [row for row in rows(book, "Selection") if row[0] == "Published figures"]
-    shown = {name: row["Utilisation"] for name, row in candidates(book).items()}
-    assert shown == {gear.designation: gear.utilisation for gear in export.selection.candidates}
+    by_name = {name: row["Utilisation"] for name, row in candidates(book).items()}
+    assert by_name == {gear.designation: gear.utilisation for gear in export.selection.candidates}
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+A1", "@SUM(A1)", '=HYPERLINK("http://evil.example")', "{=1}"])

@@ -193,6 +193,6 @@ def test_many_workers_can_keep_the_same_catalogues_at_once(
         return result
 
     assert [worker.exitcode for worker in workers] == [0, 0, 0, 0]
-    count, found = asyncio.run(kept())
+    count, results = asyncio.run(kept())
     assert count == 2
-    assert plain(found) == plain(catalogue)
+    assert plain(results) == plain(catalogue)

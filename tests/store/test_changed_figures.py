@@ -51,9 +51,9 @@ def changed(folder: Path, tmp_path: Path) -> Callable[..., tuple[Json, str]]:
 
 def rows(panel: str, table: str) -> list[list[str]]:
     """Cells of a table of the panel, without their marks."""
-    found = re.search(rf'<table id="{table}">.*?<tbody>(.*?)</tbody>', panel, re.DOTALL)
+    match = re.search(rf'<table id="{table}">.*?<tbody>(.*?)</tbody>', panel, re.DOTALL)
     cells = (
-        re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.DOTALL) for row in (found[1] if found else "").split("</tr>")
+        re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.DOTALL) for row in (match[1] if match else "").split("</tr>")
     )
     return [[_text(cell) for cell in row] for row in cells if row]
 
@@ -90,9 +90,9 @@ def test_a_figure_that_no_check_depends_on_is_told_with_both_values(
 
     # The motor's inertia gives one figure that no check looks at.
     assert {d["field"] for d in today["differences"]} == ({"end_stop_speed_rpm"} if name == "inertia_kgm2" else set())
-    [found] = [d for d in today["figure_differences"] if d["field"] == name]
-    assert (found["candidate"], found["motor"]) == owner
-    assert found["saved"] != found["today"]
+    [results] = [d for d in today["figure_differences"] if d["field"] == name]
+    assert (results["candidate"], results["motor"]) == owner
+    assert results["saved"] != results["today"]
     assert ("Today the result is the same" in panel) == (name != "inertia_kgm2")
     assert rows(panel, "figure-differences") == [row]
 
@@ -127,12 +127,12 @@ def test_a_gear_that_is_gone_is_told_as_that(
         return re.sub(r"(?m)^20A,5,.*\n", "", text)
 
     _, panel = changed(ONE_RATIO, {"gears.csv": without, "ratings.csv": without}, language, ordering_code=CODE)
-    said = _text(panel)
+    message = _text(panel)
 
-    assert gone in said and code in said
+    assert gone in message and code in message
     [[_, _, _, today]] = [row for row in rows(panel, "differences") if row[0] == "HPN-20A-5"]
     assert today == none
-    assert "publishes other figures" not in said and "andere Werte" not in said
+    assert "publishes other figures" not in message and "andere Werte" not in message
 
 
 def test_an_output_version_that_is_gone_is_told(changed: Callable[..., tuple[Json, str]]) -> None:
@@ -146,13 +146,13 @@ def test_an_output_version_that_is_gone_is_told(changed: Callable[..., tuple[Jso
 def test_utilisations_and_reserves_are_percentages(changed: Callable[..., tuple[Json, str]]) -> None:
     """T_N of 50 Nm for 80: 32.02 Nm are 64 % for 40 %; by hand."""
     _, panel = changed(ONE_RATIO, {"ratings.csv": lambda text: text.replace("20A,5,149,80,", "20A,5,149,50,")})
-    found = {row[1]: row[2:] for row in rows(panel, "differences")}
-    assert found["Load limit 1: average torque: Utilisation %"] == ["40.0", "64.0"]
-    assert found["All duty torques %"] == ["250", "156"]
+    by_name = {row[1]: row[2:] for row in rows(panel, "differences")}
+    assert by_name["Load limit 1: average torque: Utilisation %"] == ["40.0", "64.0"]
+    assert by_name["All duty torques %"] == ["250", "156"]
 
 
 def test_many_gears_with_other_figures_are_counted(changed: Callable[..., tuple[Json, str]]) -> None:
     """One bolt of a size belongs to all of its 13 ratios."""
     _, panel = changed(worked_example(), {"clamp_bolts.csv": lambda text: text.replace("20A,M4,4.6", "20A,M4,5.1")})
-    assert "HPN-20A-3, HPN-20A-4, " in (said := _text(panel))
-    assert "HPN-20A-45 and 1 more." in said
+    assert "HPN-20A-3, HPN-20A-4, " in (message := _text(panel))
+    assert "HPN-20A-45 and 1 more." in message

@@ -72,9 +72,9 @@ def test_verdicts_come_first_then_figures_then_texts(reply: Json) -> None:
     today["candidates"][0]["checks"][0]["status"] = "fail"
     today["selected"] = None
 
-    found = differences(reply, today)
+    result = differences(reply, today)
 
-    assert [difference.field for difference in found] == [
+    assert [difference.field for difference in result] == [
         "selected",
         "status",
         "status",
@@ -82,7 +82,7 @@ def test_verdicts_come_first_then_figures_then_texts(reply: Json) -> None:
         "utilisation",
         "reason",
     ]
-    assert [difference.kind for difference in found] == ["verdict"] * 4 + ["figure", "text"]
+    assert [difference.kind for difference in result] == ["verdict"] * 4 + ["figure", "text"]
 
 
 def test_a_candidate_that_is_gone_is_one_difference(reply: Json) -> None:
@@ -166,9 +166,9 @@ def test_a_verdict_that_differs_though_no_figure_does_is_the_tie_rules(reply: Js
     first["rank"], second["rank"] = second["rank"], first["rank"]
     today["selected"] = second["designation"]
 
-    found = differences(reply, today)
+    result = differences(reply, today)
 
-    assert {one.field for one in found} == {"selected", "rank"}
-    assert {one.cause for one in found} == {"tie_rule"}
+    assert {one.field for one in result} == {"selected", "rank"}
+    assert {one.cause for one in result} == {"tie_rule"}
     today["duty"]["average_torque_Nm"] *= 1.01
     assert {one.cause for one in differences(reply, today)} == {None}

@@ -32,10 +32,10 @@ def client(ready_database: str) -> Iterator[TestClient]:
 def test_a_draft_has_the_reply_of_its_own_application(supplemented: Supplement) -> None:
     """With curves, efficiencies, cycles of 1 to 300 phases, and some that are refused."""
     catalogue = supplemented(**SUPPLEMENT)
-    given = [at_random(random.Random(seed), MODELS) for seed in range(100)]
-    given += [cycle(*[phase(10 + k, 100)] * 300) for k in range(3)]
+    values = [at_random(random.Random(seed), MODELS) for seed in range(100)]
+    values += [cycle(*[phase(10 + k, 100)] * 300) for k in range(3)]
     refused = 0
-    for number, parts in enumerate(given):
+    for number, parts in enumerate(values):
         application = Application.model_validate(parts)
         try:
             reply = encode(select(application, catalogue, to_link))
@@ -73,8 +73,8 @@ def test_savers_at_once_each_find_their_own(client: TestClient) -> None:
             continue
         assert status == 201, answer
         assert answer["id"] == answers[number + 40][1]["id"]
-        found = client.get(f"/api/v1/selections/{answer['id']}").json()
-        wanted = body(number)
-        assert (found["title"], found["application"]) == (wanted["title"], wanted["application"])
-        assert found["result"] == client.post("/api/v1/select", json=wanted["application"]).json()
-        assert found["today"]["difference_count"] == 0
+        reply = client.get(f"/api/v1/selections/{answer['id']}").json()
+        expected = body(number)
+        assert (reply["title"], reply["application"]) == (expected["title"], expected["application"])
+        assert reply["result"] == client.post("/api/v1/select", json=expected["application"]).json()
+        assert reply["today"]["difference_count"] == 0

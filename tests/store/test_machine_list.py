@@ -27,8 +27,8 @@ def listed(client: TestClient, **wanted: Sorting | str) -> list[tuple[MachineLin
     """Lines with their governing axes."""
     assert client.portal is not None
     filter = LineFilter(**wanted)  # type: ignore[arg-type]
-    found = client.portal.call(partial(state_of(client).store.machine_list, None, 50, filter, {}))
-    return [(line, found.governing.get(line.id)) for line in found.lines]
+    record = client.portal.call(partial(state_of(client).store.machine_list, None, 50, filter, {}))
+    return [(line, record.governing.get(line.id)) for line in record.lines]
 
 
 def require_same(client: TestClient, place: str) -> None:
@@ -96,8 +96,8 @@ def test_changes_are_counted_since_the_latest_revision(client: TestClient) -> No
     def changes() -> tuple[int, bool]:
         page = text_of(client.get("/machines").text)
         (line, _), *_ = listed(client)
-        said = re.search(r"\b(\d+) changes?\b", page)
-        assert (int(said[1]) if said else 0) == line.changes
+        match = re.search(r"\b(\d+) changes?\b", page)
+        assert (int(match[1]) if match else 0) == line.changes
         return line.changes, "no revision yet" in page
 
     assert changes() == (0, True)

@@ -37,8 +37,8 @@ STATES = ("suitable", "suitable", "suitable", "unsuitable", "open")
 
 def draft(**changes: Any) -> MachineDraft:
     """A machine of five axes."""
-    given = {"axes": [axis(f"axis {n}", state, n / 10) for n, state in enumerate(STATES)]}
-    return MachineDraft(**{"engine_version": "1", "catalogue_version": "c", **given, **changes})
+    names = {"axes": [axis(f"axis {n}", state, n / 10) for n, state in enumerate(STATES)]}
+    return MachineDraft(**{"engine_version": "1", "catalogue_version": "c", **names, **changes})
 
 
 async def age(store: Store, id: str, by: timedelta) -> None:
@@ -48,14 +48,14 @@ async def age(store: Store, id: str, by: timedelta) -> None:
 
 
 async def test_a_calculated_machine_is_found_and_listed_once_it_is_saved(store: Store) -> None:
-    given = draft()
-    id = await store.keep_machine(given, MOST_BYTES)
+    inputs = draft()
+    id = await store.keep_machine(inputs, MOST_BYTES)
 
-    found = await store.find_machine(id)
-    assert found is not None and found.saved is None
-    assert (found.axes, found.suitable, found.unsuitable, found.open, found.utilisation) == (5, 3, 1, 1, 0.2)
-    assert [(each.number, each.name, each.application, each.answer) for each in found.items] == [
-        (number, one.name, one.application, one.answer) for number, one in enumerate(given.axes, 1)
+    record = await store.find_machine(id)
+    assert record is not None and record.saved is None
+    assert (record.axes, record.suitable, record.unsuitable, record.open, record.utilisation) == (5, 3, 1, 1, 0.2)
+    assert [(each.number, each.name, each.application, each.answer) for each in record.items] == [
+        (number, one.name, one.application, one.answer) for number, one in enumerate(inputs.axes, 1)
     ]
     assert await store.machines() == ([], None)
 
@@ -72,8 +72,8 @@ async def test_a_saved_machine_is_not_saved_again_under_another_name(store: Stor
 
     assert not await store.save_machine(id, {**NAMES, "title": "another"}, "bert", FIRST)
 
-    found = await store.find_machine(id)
-    assert found is not None and (found.title, found.owner) == ("Line 4", "anna")
+    record = await store.find_machine(id)
+    assert record is not None and (record.title, record.owner) == ("Line 4", "anna")
 
 
 async def test_a_saved_machine_is_renamed_and_nothing_else_of_it_changes(store: Store) -> None:
@@ -90,13 +90,13 @@ async def test_a_saved_machine_is_renamed_and_nothing_else_of_it_changes(store: 
 
 
 async def test_a_machine_that_nobody_saves_goes_after_a_day(store: Store) -> None:
-    kept, left = await store.keep_machine(draft(), MOST_BYTES), await store.keep_machine(draft(), MOST_BYTES)
-    await store.save_machine(kept, NAMES, None, FIRST)
-    for id in (kept, left):
+    record, left = await store.keep_machine(draft(), MOST_BYTES), await store.keep_machine(draft(), MOST_BYTES)
+    await store.save_machine(record, NAMES, None, FIRST)
+    for id in (record, left):
         await age(store, id, timedelta(hours=25))
 
     assert await store.find_machine(left) is None
-    assert await store.find_machine(kept) is not None
+    assert await store.find_machine(record) is not None
     await store.keep_machine(draft(), MOST_BYTES)
     assert not await store.delete(left, kind="machine")
 
@@ -152,8 +152,8 @@ async def test_those_that_come_at_once_do_not_pass_the_bounds_together(store: St
         return_exceptions=True,
     )
 
-    assert [type(found) for found in of_all].count(str) == 3
-    assert [type(found) for found in of_one].count(str) == MOST_OF_CALLER
+    assert [type(result) for result in of_all].count(str) == 3
+    assert [type(results) for results in of_one].count(str) == MOST_OF_CALLER
 
 
 async def test_machines_are_listed_newest_first_in_parts(store: Store) -> None:

@@ -78,9 +78,9 @@ async def test_its_own_setting_goes_before_the_address_and_a_wrong_one_is_refuse
 
 
 def test_compose_hands_over_the_password_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    given = COMPOSE["services"]["web"]["environment"]
+    inputs = COMPOSE["services"]["web"]["environment"]
 
-    assert "PASSWORD" not in given["HPN_DATABASE_URL"]
-    assert given["HPN_DATABASE_PASSWORD"] == COMPOSE["services"]["db"]["environment"]["POSTGRES_PASSWORD"]
+    assert "PASSWORD" not in inputs["HPN_DATABASE_URL"]
+    assert inputs["HPN_DATABASE_PASSWORD"] == COMPOSE["services"]["db"]["environment"]["POSTGRES_PASSWORD"]
     monkeypatch.setenv("HPN_DATABASE_PASSWORD", "@:/?#% ü")
     assert Settings().database()["password"] == "@:/?#% ü"

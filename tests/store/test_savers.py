@@ -66,9 +66,9 @@ async def test_a_deletion_leaves_nothing_of_the_key_but_its_hash(store: Store) -
     async with store._engine.connect() as connection:
         (row,) = (await connection.execute(text("SELECT * FROM idempotency_keys"))).mappings()
 
-    kept = {name: value for name, value in row.items() if value is not None}
-    assert kept.pop("key_sha256") == hashlib.sha256(b"part 4711").hexdigest()
-    assert kept.keys() == {"deleted"}
+    by_name = {name: value for name, value in row.items() if value is not None}
+    assert by_name.pop("key_sha256") == hashlib.sha256(b"part 4711").hexdigest()
+    assert by_name.keys() == {"deleted"}
 
 
 async def test_retries_and_deletions_at_once_never_bring_back_what_was_deleted(
@@ -115,8 +115,8 @@ async def test_savers_who_come_together_each_get_their_own(store: Store, ready_d
     retries = await asyncio.gather(*(store.save(each) for each in drafts[1::2]))
     await other.close()
 
-    found = [await store.find(id) for id in ids]
-    assert [(each and each.title, each and each.result) for each in found] == [(d.title, d.result) for d in drafts]
+    values = [await store.find(id) for id in ids]
+    assert [(each and each.title, each and each.result) for each in values] == [(d.title, d.result) for d in drafts]
     assert retries == ids[1::2]
     assert await count(store) == 60
 

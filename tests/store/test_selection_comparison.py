@@ -39,11 +39,11 @@ def rows(page: str, part: str) -> dict[str, list[str]]:
     """Texts of a part of the table by the heads of its rows; `differs` is one more text of a row that is marked so."""
     body = re.search(rf'<tbody id="compared-{part}">(.*?)</tbody>', page, re.S)
     assert body, part
-    found = {}
+    result = {}
     for marked, row in re.findall(r'<tr class="(differs)?[^"]*">(.*?)</tr>', body[1], re.S):
         head, *cells = (text(cell) for cell in re.findall(r"<t[hd].*?</t[hd]>", row, re.S))
-        found[head] = [*cells, *([marked] if marked else [])]
-    return found
+        result[head] = [*cells, *([marked] if marked else [])]
+    return result
 
 
 def text(markup: str) -> str:
@@ -144,15 +144,15 @@ def test_not_two_is_asked_for_two(client: TestClient, query: str) -> None:
 
 
 def test_one_that_is_deleted_says_so_and_the_other_stays_in_reach(client: TestClient) -> None:
-    kept, gone = saved(client, LOADED, title="kept"), saved(client, LOADED)
+    record, gone = saved(client, LOADED, title="kept"), saved(client, LOADED)
     client.delete(f"/api/v1/selections/{gone}")
 
-    one = client.get(f"/selections/compare?a={gone}&b={kept}")
+    one = client.get(f"/selections/compare?a={gone}&b={record}")
     none = client.get(f"/selections/compare?a={gone}&b=x")
 
     assert (one.status_code, none.status_code) == (404, 404)
     assert "One of the two is not there" in one.text
-    assert f'<a href="/selections/{kept}">kept</a>' in one.text
+    assert f'<a href="/selections/{record}">kept</a>' in one.text
     assert "Neither of the two is there" in none.text
 
 

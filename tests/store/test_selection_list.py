@@ -45,8 +45,8 @@ def saved(client: TestClient, application: Json | None = None, **labels: str) ->
 def rows(page: str) -> list[list[str]]:
     """Texts of the cells of the table, row by row."""
     body = re.search("<tbody>(.*?)</tbody>", page, re.S)
-    found = re.findall("<tr.*?</tr>", body[1], re.S) if body else []
-    cells = [re.findall(r"<t[hd].*?</t[hd]>", row, re.S) for row in found]
+    matches = re.findall("<tr.*?</tr>", body[1], re.S) if body else []
+    cells = [re.findall(r"<t[hd].*?</t[hd]>", row, re.S) for row in matches]
     return [[_text(cell) for cell in row if _says(cell)] for row in cells]
 
 
@@ -68,8 +68,8 @@ def test_a_line_says_what_was_saved_and_leads_to_its_page(client: TestClient) ->
     best = next(entry for entry in reply["result"]["candidates"] if entry["rank"] == 1)
     share, when = f"{100 * best['utilisation']:.0f} %", reply["created"][:16].replace("T", " ")
     assert page.status_code == 200
-    [[name, _, gear, _, use, kept]] = rows(page.text)
-    assert (name, gear, use, kept) == ("Axis <7> 4711", reply["selected"], f"{share} ✓suitable", f"{when} M. Muster")
+    [[name, _, gear, _, use, record]] = rows(page.text)
+    assert (name, gear, use, record) == ("Axis <7> 4711", reply["selected"], f"{share} ✓suitable", f"{when} M. Muster")
     assert f'<a href="{address}">Axis &lt;7&gt;</a>' in page.text
 
 
@@ -115,8 +115,8 @@ def test_a_reference_filters_as_it_does_over_rest_where_an_empty_field_is_none(c
         saved(client, reference=reference)
 
     for reference in ("4711", " 4711 ", "47 & 11", "471", ""):
-        asked = {"reference": reference} if reference else {}
-        listed = client.get("/api/v1/selections", params=asked).json()["selections"]
+        question = {"reference": reference} if reference else {}
+        listed = client.get("/api/v1/selections", params=question).json()["selections"]
         page = client.get("/selections", params={"reference": reference}).text
         assert [row[0] for row in rows(page)] == [selection["reference"] for selection in listed]
         assert f'value="{html.escape(reference)}"' in page
@@ -186,11 +186,11 @@ def test_a_guarded_list_asks_the_browser_for_the_key(tmp_path: Path) -> None:
     key, pair = new_key("plm")
     settings = Settings(database_url=f"sqlite:///{tmp_path}/store.sqlite3", api_keys=pair)
     with TestClient(create_app(settings)) as client:
-        refused, shown = client.get("/selections"), client.get("/selections", auth=("anybody", key))
+        refused, view = client.get("/selections"), client.get("/selections", auth=("anybody", key))
 
     assert (refused.status_code, refused.headers["www-authenticate"]) == (401, 'Basic realm="HPN Select"')
-    assert shown.status_code == 200
-    assert "private" in shown.headers["cache-control"]
+    assert view.status_code == 200
+    assert "private" in view.headers["cache-control"]
 
 
 @pytest.mark.parametrize("path", ["/", "/catalogue", "/catalogue/HPN-20A-5", "/selections", "/paste", "/nowhere"])
@@ -229,9 +229,9 @@ def test_a_search_keeps_its_words_and_its_parts(client: TestClient) -> None:
 
 def form(page: str, action: str) -> dict[str, str]:
     """Fields of the form with this action, as they stand there."""
-    found = re.search(rf'<form[^>]*action="{re.escape(action)}".*?</form>', page, re.S)
-    assert found, action
-    fields = re.findall(r'name="(\w+)"[^>]*value="([^"]*)"', found[0])
+    match = re.search(rf'<form[^>]*action="{re.escape(action)}".*?</form>', page, re.S)
+    assert match, action
+    fields = re.findall(r'name="(\w+)"[^>]*value="([^"]*)"', match[0])
     return {name: html.unescape(value) for name, value in fields}
 
 
@@ -298,6 +298,6 @@ def test_where_there_are_keys_the_page_asks_for_the_owners(tmp_path: Path) -> No
         owner, other = (("anybody", keys[name][0]) for name in ("plm", "erp"))
         for change in ("rename", "delete"):
             place, data = f"{address}/{change}", {"title": "x"}
-            asked = client.post(place, data=data)
-            assert (asked.status_code, asked.headers["www-authenticate"]) == (401, 'Basic realm="HPN Select"')
+            response = client.post(place, data=data)
+            assert (response.status_code, response.headers["www-authenticate"]) == (401, 'Basic realm="HPN Select"')
             assert [client.post(place, data=data, auth=who).status_code for who in (other, owner)] == [403, 200]

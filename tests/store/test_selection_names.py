@@ -52,7 +52,7 @@ def test_an_ordering_code_that_cannot_be_is_refused(client: TestClient, code: st
 
 
 @pytest.mark.parametrize(
-    ("search", "found"),
+    ("search", "result"),
     [
         ("ÄXIS", ["a", "b"]),
         ("axis 4711-b", ["b"]),
@@ -66,7 +66,7 @@ def test_an_ordering_code_that_cannot_be_is_refused(client: TestClient, code: st
     ],
 )
 def test_a_search_finds_each_word_in_any_case_wherever_it_stands(
-    client: TestClient, search: str, found: list[str]
+    client: TestClient, search: str, result: list[str]
 ) -> None:
     labels: list[Json] = [
         {"title": "Äxis a", "reference": "4711-A", "author": "M. Muster", "ordering_code": "HPN-20A-5-J6-BH-AF1"},
@@ -78,7 +78,7 @@ def test_a_search_finds_each_word_in_any_case_wherever_it_stands(
 
     listed = client.get(ADDRESS, params={"search": search}).json()["selections"]
 
-    assert [entry["title"].split(" ")[1 if "xis" in entry["title"] else 2] for entry in listed[::-1]] == found
+    assert [entry["title"].split(" ")[1 if "xis" in entry["title"] else 2] for entry in listed[::-1]] == result
 
 
 def test_the_next_part_of_a_search_is_of_the_same_search(client: TestClient) -> None:

@@ -162,13 +162,13 @@ def test_another_candidate_can_be_looked_at(client: TestClient) -> None:
     assert "of HPN-32A-5" in page.text
 
 
-@pytest.mark.parametrize(("size", "shown"), [("40A", "–"), ("20A", "unlimited")])
-def test_life_is_unlimited_only_where_the_gear_is_rated(client: TestClient, size: str, shown: str) -> None:
-    asked = cycle(phase(0, 10), requirements={"sizes": [size], "ratios": [5], "backlash_arcmin": 4})
-    page = client.get(sent(client, link=to_link(Application.model_validate(asked)))).text
+@pytest.mark.parametrize(("size", "content"), [("40A", "–"), ("20A", "unlimited")])
+def test_life_is_unlimited_only_where_the_gear_is_rated(client: TestClient, size: str, content: str) -> None:
+    question = cycle(phase(0, 10), requirements={"sizes": [size], "ratios": [5], "backlash_arcmin": 4})
+    page = client.get(sent(client, link=to_link(Application.model_validate(question)))).text
 
     life = re.search("<dt[^>]*>Gear life.*?</dt><dd>(.*?)</dd>", page)
-    assert life and re.sub("<[^>]*>", "", life[1]) == shown
+    assert life and re.sub("<[^>]*>", "", life[1]) == content
 
 
 def test_a_result_that_differs_today_stands_beside_the_saved_one(client: TestClient, supplemented: Supplement) -> None:
@@ -263,8 +263,8 @@ def test_the_chain_names_the_gear_of_each_revision(client: TestClient) -> None:
             "answer"
         ]
         used = f"{answer['utilisation']:.0%}".replace("%", " %")
-        said = re.search(rf"{before} \d{{4}}-\d\d-\d\d (.*?)(?= A |$)", chain)
-        assert said and f"{answer['selected']}, {used}" in said[1].replace("\u202f", " "), chain
+        match = re.search(rf"{before} \d{{4}}-\d\d-\d\d (.*?)(?= A |$)", chain)
+        assert match and f"{answer['selected']}, {used}" in match[1].replace("\u202f", " "), chain
 
 
 @pytest.mark.parametrize(("load", "changes"), [({}, 1), ({"output_load": {"radial_N": 500.0, "axial_N": 200.0}}, 2)])
@@ -272,7 +272,7 @@ def test_what_would_make_a_lighter_gear_fit_is_taken_into_a_copy(client: TestCli
     """In the copy the lighter gear passes with the changed input, and what is saved stays to the byte."""
     link = to_link(Application.model_validate(worked_example(requirements={"ratios": [5]}, **load)))
     address = sent(client, link=link, title="Turret")
-    page, kept = client.get(address).text, client.get(f"/api/v1{address}").content
+    page, record = client.get(address).text, client.get(f"/api/v1{address}").content
     fails = page[page.index("Nearest lighter gear") :]
     lighter = re.search(r"HPN-[0-9]+A-[0-9]+", fails)
     copies = [html.unescape(link) for link in re.findall(r'<a href="([^"]*)">in a copy</a>', fails)]
@@ -282,7 +282,7 @@ def test_what_would_make_a_lighter_gear_fit_is_taken_into_a_copy(client: TestCli
         copy = client.get(copied).text
         verdict = copy[copy.index('id="verdict"') : copy.index("</h2>", copy.index('id="verdict"'))]
         assert lighter[0] in verdict and 'class="status suitable"' in verdict and 'id="application"' in copy
-    assert client.get(f"/api/v1{address}").content == kept
+    assert client.get(f"/api/v1{address}").content == record
 
 
 def test_an_earlier_revision_leads_to_the_latest_and_its_gears_stay_its_own(client: TestClient) -> None:

@@ -44,11 +44,11 @@ def test_the_saved_result_is_the_reply_of_select_byte_for_byte(client: TestClien
 
 
 def test_the_application_comes_back_as_it_was_given(client: TestClient) -> None:
-    given = {"duty_cycle": {"phases": [{"torque_Nm": -1e-3, "speed_rpm": 1, "duration_s": 5e2}]}, "rank_by": "life"}
+    document = {"duty_cycle": {"phases": [{"torque_Nm": -1e-3, "speed_rpm": 1, "duration_s": 5e2}]}, "rank_by": "life"}
 
-    id = save(client, application=given)
+    id = save(client, application=document)
 
-    assert client.get(f"{ADDRESS}/{id}").json()["application"] == given
+    assert client.get(f"{ADDRESS}/{id}").json()["application"] == document
 
 
 @pytest.mark.parametrize(

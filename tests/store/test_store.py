@@ -34,22 +34,22 @@ async def test_a_saved_selection_comes_back_as_it_was_byte_for_byte(store: Store
     )
     before = datetime.now(UTC)
 
-    found = await store.find(await store.save(saved))
+    record = await store.find(await store.save(saved))
 
-    assert found is not None
+    assert record is not None
     for name in ("application", "result", "engine_version", "catalogue_version", "selected", "title", "reference"):
-        assert getattr(found, name) == getattr(saved, name)
-    assert before <= found.created <= datetime.now(UTC)
-    assert found.created.utcoffset() == timedelta(0)
+        assert getattr(record, name) == getattr(saved, name)
+    assert before <= record.created <= datetime.now(UTC)
+    assert record.created.utcoffset() == timedelta(0)
 
 
 async def test_a_large_selection_comes_back_whole(store: Store) -> None:
     large = draft(application=b"[" + b"1234.5678," * 100_000 + b"0]", result=bytes(range(256)) * 10_000)
 
-    found = await store.find(await store.save(large))
+    record = await store.find(await store.save(large))
 
-    assert found is not None
-    assert (found.application, found.result) == (large.application, large.result)
+    assert record is not None
+    assert (record.application, record.result) == (large.application, large.result)
 
 
 async def test_ids_are_128_bits_that_differ(store: Store) -> None:
@@ -84,10 +84,10 @@ def test_replies_packed_by_earlier_versions_are_read(stream: bytes) -> None:
 async def test_a_reply_of_any_length_comes_back(store: Store, size: int) -> None:
     result = bytes(range(256)) * (size // 256) + bytes(size % 256)
 
-    found = await store.find(await store.save(draft(result=result)))
+    record = await store.find(await store.save(draft(result=result)))
 
-    assert found is not None
-    assert found.result == result
+    assert record is not None
+    assert record.result == result
 
 
 @pytest.mark.parametrize("id", ["", "x", "A" * 22, "A" * 23, "é" * 22, "A" * 21 + "\0", "' OR 1=1 --"])
@@ -97,13 +97,13 @@ async def test_an_id_that_was_never_saved_is_not_found(store: Store, id: str) ->
 
 
 async def test_a_deleted_selection_is_gone_and_the_others_stay(store: Store) -> None:
-    kept, gone = await store.save(draft()), await store.save(draft())
+    record, gone = await store.save(draft()), await store.save(draft())
 
     assert await store.delete(gone) is True
 
     assert await store.find(gone) is None
     assert await store.delete(gone) is False
-    assert await store.find(kept) is not None
+    assert await store.find(record) is not None
 
 
 async def test_a_list_gives_every_selection_once_newest_first(store: Store) -> None:
@@ -276,8 +276,8 @@ async def test_readiness_is_gone_where_saving_or_its_promises_are(
 ) -> None:
     store = Store(database)
     await store.open()
-    given = draft(catalogue=catalogue, catalogue_version=catalogue.version)
-    await store.save(given)
+    inputs = draft(catalogue=catalogue, catalogue_version=catalogue.version)
+    await store.save(inputs)
     await store.check(catalogue)
     for statement in statements:
         await change(store, partial(Connection.execute, statement=text(statement)))

@@ -64,17 +64,17 @@ def later(ready_database: str, tmp_path: Path) -> Later:
 def settled(client: TestClient, query: str = "") -> Json:
     """A list whose documents are all asked."""
     end = time.monotonic() + SECONDS
-    while (found := read(client, query))["pending"]:
-        assert time.monotonic() < end, found
+    while (result := read(client, query))["pending"]:
+        assert time.monotonic() < end, result
         time.sleep(0.05)
-    return found
+    return result
 
 
 def read(client: TestClient, query: str) -> Json:
     answer = client.get(f"/api/v1/{query or 'machines?kind=all'}")
     assert answer.status_code == 200, answer.text
-    found: Json = answer.json()
-    return found
+    reply: Json = answer.json()
+    return reply
 
 
 def make(client: TestClient) -> tuple[str, str, str]:
@@ -85,8 +85,8 @@ def make(client: TestClient) -> tuple[str, str, str]:
 
 def test_what_was_saved_a_moment_ago_is_known(client: TestClient, asked: Asking) -> None:
     make(client)
-    found = read(client, "machines?kind=all")
-    assert found["pending"] == 0 and {each["today"]["verdict_changed"] for each in found["machines"]} == {0}
+    result = read(client, "machines?kind=all")
+    assert result["pending"] == 0 and {each["today"]["verdict_changed"] for each in result["machines"]} == {0}
     first = read(client, "selections?search=other")["selections"][0]
     assert first["today"] == {"selected": first["selected"], "status": first["status"], "verdict_changed": False}
     assert not asked
@@ -95,8 +95,8 @@ def test_what_was_saved_a_moment_ago_is_known(client: TestClient, asked: Asking)
 def test_a_new_catalogue_says_what_gets_another_verdict(client: TestClient, later: Later, asked: Asking) -> None:
     machine, other, same = make(client)
     with later() as new:
-        found = {each["id"]: each["today"] for each in settled(new)["machines"]}
-        assert found == {
+        by_name = {each["id"]: each["today"] for each in settled(new)["machines"]}
+        assert by_name == {
             machine: {"verdict_changed": 1, "axes": [1]},
             other: {"verdict_changed": 1, "axes": []},
             same: {"verdict_changed": 0, "axes": []},
@@ -168,8 +168,8 @@ def test_a_revision_of_a_selection_is_of_today(
         assert line["selected"] == line["today"]["selected"] and not line["today"]["verdict_changed"]
         assert sum(asked) == 1
     with TestClient(create_app(Settings(database_url=ready_database))) as older:  # the older catalogue again
-        found = settled(older, "selections")["selections"][0]
-        assert found["today"]["verdict_changed"] and sum(asked) == 2
+        result = settled(older, "selections")["selections"][0]
+        assert result["today"]["verdict_changed"] and sum(asked) == 2
 
 
 def test_five_hundred_selections_are_one_request_of_some_20_kb(
@@ -189,14 +189,14 @@ async def _fill(database: str, catalogue: Catalogue) -> None:
     drafts = []
     for application in (NEAR, SLOW):
         selection = select(Application.model_validate(application), catalogue)
-        shown = selection.candidate(str(selection.selected))
-        assert shown is not None
+        view = selection.candidate(str(selection.selected))
+        assert view is not None
         (answer,) = answers([AxisQuestion(resolve(application, {}))], catalogue)
         parts: Json = {
             "application": Application.model_validate(application).model_dump_json(exclude_unset=True).encode()
         }
-        parts |= {"result": encode(selection), "selected": selection.selected, "designation": shown.designation}
-        parts |= {"status": shown.status, "utilisation": shown.utilisation, "catalogue_version": catalogue.version}
+        parts |= {"result": encode(selection), "selected": selection.selected, "designation": view.designation}
+        parts |= {"status": view.status, "utilisation": view.utilisation, "catalogue_version": catalogue.version}
         drafts.append(parts | {"answer": columns_of(answer)})
     for number in range(500):
         await store.save(draft(**drafts[number >= 25], title=f"Axis {number}", reference="4711"))
@@ -221,12 +221,12 @@ def test_each_order_is_the_other_reversed_whole_or_in_parts(line: TestClient, ad
     and_ = "&" if "?" in address else "?"
 
     def ids(sort: str, limit: int) -> list[str]:
-        found, cursor = list[str](), ""
+        result, cursor = list[str](), ""
         while cursor is not None:
             part = read(line, f"{address}{and_}sort={sort}&limit={limit}{cursor and f'&cursor={cursor}'}")
-            found += [each["id"] for each in part["machines"]]
+            result += [each["id"] for each in part["machines"]]
             cursor = part["next_cursor"]
-        return found
+        return result
 
     whole = ids(name, 200)
     assert len(whole) == 5 and ids(f"-{name}", 200) == whole[::-1]

@@ -51,10 +51,10 @@ def test_of_those_who_rename_one_state_at_once_one_succeeds(client: TestClient) 
         place, seen = saved(client)
         titles = [{"title": f"by {number}"} for number in range(CALLERS)]
 
-        found = at_once([partial(client.patch, place, json=title, headers=seen) for title in titles])
+        result = at_once([partial(client.patch, place, json=title, headers=seen) for title in titles])
 
-        assert sorted(found) == [200] + [412] * (CALLERS - 1)
-        assert client.get(place).json()["title"] == f"by {found.index(200)}"
+        assert sorted(result) == [200] + [412] * (CALLERS - 1)
+        assert client.get(place).json()["title"] == f"by {result.index(200)}"
 
 
 def test_a_rename_and_a_delete_of_one_state_at_once_do_not_both_succeed(client: TestClient) -> None:
@@ -96,16 +96,16 @@ def test_forms_of_one_version_that_are_sent_at_once_change_it_once(client: TestC
         renames = [{"title": f"by {number}", **form} for number in range(CALLERS - 1)]
         calls = [partial(client.post, f"{place}/rename", data=data) for data in renames]
         calls.append(partial(client.post, f"{place}/delete", data=form))
-        found = at_once(calls)
+        result = at_once(calls)
 
-        assert found.count(303) == 1
-        assert set(found) <= {303, 404, 412}
+        assert result.count(303) == 1
+        assert set(result) <= {303, 404, 412}
 
 
 def test_a_page_says_that_somebody_was_faster(client: TestClient) -> None:
     place = saved(client)[0].removeprefix("/api/v1")
-    asked = client.get(f"{place}/delete").text
-    assert '<input type="hidden" name="version" value="1">' in asked
+    page_text = client.get(f"{place}/delete").text
+    assert '<input type="hidden" name="version" value="1">' in page_text
     assert '<input type="hidden" name="version" value="1">' in client.get("/selections").text
     assert client.post(f"{place}/rename", data={"title": "new", "version": "1"}).status_code == 303
 
@@ -121,8 +121,8 @@ def test_a_machine_that_two_save_at_once_has_the_names_of_one_and_the_other_lear
     assert client.portal is not None
     for _ in range(ROUNDS):
         place = f"/machines/{client.portal.call(state_of(client).store.keep_machine, machine_draft(), MOST_BYTES)}"
-        found = at_once([partial(client.post, place, data={"title": f"of {n}"}) for n in range(3)])
+        result = at_once([partial(client.post, place, data={"title": f"of {n}"}) for n in range(3)])
 
-        assert sorted(found) == [303, 412, 412]
-        assert f"of {found.index(303)}" in client.get("/machines").text
-        assert client.post(place, data={"title": f"of {found.index(303)}"}).status_code == 303  # sent once more
+        assert sorted(result) == [303, 412, 412]
+        assert f"of {result.index(303)}" in client.get("/machines").text
+        assert client.post(place, data={"title": f"of {result.index(303)}"}).status_code == 303  # sent once more

@@ -134,8 +134,8 @@ def test_a_new_file_is_in_write_ahead_mode_before_anyone_connects(tmp_path: Path
     """SQLite refuses at once all but one of those who change the mode together."""
     file = tmp_path / "store.sqlite3"
     with ThreadPoolExecutor(8) as pool:
-        made = [pool.submit(make_engine, f"sqlite:///{file}", seconds=1) for _ in range(8)]
-    for each in made:
+        values = [pool.submit(make_engine, f"sqlite:///{file}", seconds=1) for _ in range(8)]
+    for each in values:
         asyncio.run(each.result().dispose())
 
     assert file.read_bytes()[18:20] == b"\x02\x02"  # versions of SQLite's file format: 1 for a rollback journal
@@ -220,8 +220,8 @@ async def test_selections_of_earlier_versions_are_listed_and_found_as_they_were(
     assert (listed["nothing fits"].utilisation or 0) > 1
     assert {(listed[title].designation, listed[title].status) for title in ("too short", "spoilt")} == {(None, None)}
     words = ("äb-1", "hpn-20a-5", "SPOILT", "SPOILT fits")
-    found = {word: len((await store.page(search=word, limit=300)).selections) for word in words}
-    assert found == {"äb-1": 209, "hpn-20a-5": 2, "SPOILT": 205, "SPOILT fits": 0}
+    by_name = {word: len((await store.page(search=word, limit=300)).selections) for word in words}
+    assert by_name == {"äb-1": 209, "hpn-20a-5": 2, "SPOILT": 205, "SPOILT fits": 0}
     await store.close()
 
 
@@ -257,10 +257,10 @@ def _fleets_as_before(connection: Connection) -> None:
         "VALUES (:id, :now, :saved, :title, 'rev. B', 1, 1, 0, 0, '1', 'x', :asked, :answers)"
     )
     times = (bindparam("now", type_=UtcTime), bindparam("saved", type_=UtcTime))
-    asked, answers = (as_parquet(pa.Table.from_pylist(rows)) for rows in (ASKED, ANSWERS))
+    case, answers = (as_parquet(pa.Table.from_pylist(rows)) for rows in (ASKED, ANSWERS))
     now = datetime.now(UTC)
     for number, (title, saved, content) in enumerate(
-        (("kept", now, asked), ("calculated", None, asked), ("damaged", now, b"PAR1\x00\xff"))
+        (("kept", now, case), ("calculated", None, case), ("damaged", now, b"PAR1\x00\xff"))
     ):
         values = {"id": f"{number:022}", "now": now, "saved": saved, "title": title}
         connection.execute(text(statement).bindparams(*times), {**values, "asked": content, "answers": answers})
@@ -270,12 +270,12 @@ async def test_fleets_of_earlier_versions_are_machines_with_what_was_saved(datab
     store = Store(database)
     await change(store, _fleets_as_before)
 
-    found = await store.find_machine(f"{0:022}")
+    record = await store.find_machine(f"{0:022}")
 
-    assert found is not None
-    assert (found.title, found.version) == ("kept", 1)
-    assert (found.axes, found.suitable, found.unsuitable, found.open) == (3, 1, 1, 1)
-    hub, long, grip = found.items
+    assert record is not None
+    assert (record.title, record.version) == ("kept", 1)
+    assert (record.axes, record.suitable, record.unsuitable, record.open) == (3, 1, 1, 1)
+    hub, long, grip = record.items
     assert orjson.loads(hub.application) == {
         "duty_cycle": {
             "phases": [
@@ -293,9 +293,9 @@ async def test_fleets_of_earlier_versions_are_machines_with_what_was_saved(datab
     assert grip.answer["status"] == "open" and "torque_Nm: is required" in grip.answer["faults"]
     async with store._engine.connect() as connection:
         rows = (await connection.execute(select(revisions).order_by(revisions.c.document))).all()
-    kept, damaged = rows
-    assert (kept.label, kept.note, kept.axes) == ("saved", "rev. B", 3)
-    assert [each.number for each in revision.decode(unpacked(kept.content_packed)).axes] == [1, 2, 3]
+    stored_record, damaged = rows
+    assert (stored_record.label, stored_record.note, stored_record.axes) == ("saved", "rev. B", 3)
+    assert [each.number for each in revision.decode(unpacked(stored_record.content_packed)).axes] == [1, 2, 3]
     assert "can’t be read" in revision.decode(unpacked(damaged.content_packed)).axes[0].answer.faults[0].detail
     await store.close()
 
@@ -303,12 +303,12 @@ async def test_fleets_of_earlier_versions_are_machines_with_what_was_saved(datab
 async def test_fleets_of_earlier_versions_are_renamed_saved_and_deleted(database: str) -> None:
     store = Store(database)
     await change(store, _fleets_as_before)
-    kept, calculated = f"{0:022}", f"{1:022}"
+    record, calculated = f"{0:022}", f"{1:022}"
 
-    assert await store.rename(kept, {"title": "new"}, 1, "machine")
+    assert await store.rename(record, {"title": "new"}, 1, "machine")
     assert await store.save_machine(calculated, {"title": "saved"}, None, FIRST)
     assert {line.title for line in (await store.machines())[0]} == {"saved", "new", "damaged"}
-    assert not await store.delete(kept, 1, "machine") and await store.delete(kept, 2, "machine")
+    assert not await store.delete(record, 1, "machine") and await store.delete(record, 2, "machine")
     await store.close()
 
 

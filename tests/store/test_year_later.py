@@ -39,8 +39,8 @@ def by_supplement(folder: Path, place: Path) -> dict[str, Path]:
     place.mkdir()
     (place / "weights.csv").write_text(WEIGHTS)
     columns = (folder / "sizes.csv").read_text().splitlines()[0]
-    given = dict(zip(*(line.split(",") for line in LIMITS.splitlines()), strict=True))
-    (place / "sizes.csv").write_text(columns + "\n" + ",".join(given.get(c, "") for c in columns.split(",")) + "\n")
+    inputs = dict(zip(*(line.split(",") for line in LIMITS.splitlines()), strict=True))
+    (place / "sizes.csv").write_text(columns + "\n" + ",".join(inputs.get(c, "") for c in columns.split(",")) + "\n")
     return {"catalogue_folder": folder, "catalogue_supplement": place}
 
 
@@ -81,8 +81,8 @@ def files_of(client: TestClient, address: str) -> dict[str, bytes]:
 
 def words(document: bytes) -> str:
     """Text of a PDF, spaces made plain."""
-    found = "\n".join(page.extract_text() for page in PdfReader(BytesIO(document)).pages)
-    return found.replace("\u00a0", " ").replace("\u200b", "").replace("\u202f", "")
+    result = "\n".join(page.extract_text() for page in PdfReader(BytesIO(document)).pages)
+    return result.replace("\u00a0", " ").replace("\u200b", "").replace("\u202f", "")
 
 
 @pytest.mark.parametrize(
@@ -170,12 +170,12 @@ def test_a_database_from_before_is_brought_up_to_date_with_what_it_has(database:
 
         store = Store(database)
         await store.open()
-        found = await store.find("A" * 22)
-        assert found is not None
-        assert (found.application, found.result, found.owner) == (b"{}", b"xyz", None)
-        kept = await store.find(await store.save(draft(owner="plm")))
-        assert kept is not None
-        assert kept.owner == "plm"
+        record = await store.find("A" * 22)
+        assert record is not None
+        assert (record.application, record.result, record.owner) == (b"{}", b"xyz", None)
+        stored_record = await store.find(await store.save(draft(owner="plm")))
+        assert stored_record is not None
+        assert stored_record.owner == "plm"
         assert await store.catalogue("v") is None
         await store.close()
 

@@ -28,17 +28,17 @@ def test_every_image_is_named_once_and_by_digest() -> None:
 
 
 def test_make_digests_writes_the_digest_of_each_tag(tmp_path: Path) -> None:
-    done = digests(tmp_path, f"echo {NEWER}")
+    outcome = digests(tmp_path, f"echo {NEWER}")
 
-    assert done.returncode == 0, done.stderr
+    assert outcome.returncode == 0, outcome.stderr
     assert named(tmp_path) == [re.sub("@.*", f"@{NEWER}", image) for image in named(ROOT)]
 
 
 def test_make_digests_changes_nothing_where_no_registry_answers(tmp_path: Path) -> None:
-    done = digests(tmp_path, "exit 1")
+    outcome = digests(tmp_path, "exit 1")
 
-    assert done.returncode != 0
-    assert "no digest" in done.stderr
+    assert outcome.returncode != 0
+    assert "no digest" in outcome.stderr
     assert named(tmp_path) == named(ROOT)
 
 

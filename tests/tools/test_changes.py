@@ -44,6 +44,6 @@ def test_every_explanation_is_of_a_mutant() -> None:
 def test_a_change_replaces_one_expression(source: str, changed: list[str], tmp_path: Path) -> None:
     path = tmp_path / "m.py"
     path.write_text(source, encoding="utf-8")
-    found: list[Mutant] = list(mutants_of("m", path))
+    result: list[Mutant] = list(mutants_of("m", path))
 
-    assert [mutant.source for mutant in found] == changed
+    assert [mutant.source for mutant in result] == changed

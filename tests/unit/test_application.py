@@ -179,12 +179,12 @@ def test_a_size_or_ratio_that_is_not_there_is_an_input_error_that_names_what_the
 
 
 def test_whole_floats_count_as_integers_and_are_kept_as_such() -> None:
-    given = Application.model_validate_json(
+    application = Application.model_validate_json(
         b'{"duty_cycle": {"phases": [{"torque_Nm": 1, "speed_rpm": 1, "duration_s": 1}]},'
         b' "requirements": {"ratios": [5.0, 1e1]}, "emergency_stop": {"torque_Nm": 2, "count": 10.0}}'
     )
 
-    dumped = given.model_dump_json()
+    dumped = application.model_dump_json()
 
     assert '"ratios":[5,10]' in dumped
     assert '"count":10}' in dumped
@@ -202,20 +202,20 @@ def test_sizes_and_ratios_restrict_the_list_and_nothing_else(catalogue: Catalogu
     ["HPN-20A-5", "HPN-20-5", "HPN-20A-05", "hpn-20a-5", "20A-5", "HPN-20A-5-J6-BH-AF1", " HPN-20A-5 ", "HPN20A-5"],
 )
 def test_every_printed_spelling_of_a_designation_is_read(catalogue: Catalogue, text: str) -> None:
-    found = catalogue.find(text)
+    result = catalogue.find(text)
 
-    assert found is not None
-    assert found.designation == "HPN-20A-5"
+    assert result is not None
+    assert result.designation == "HPN-20A-5"
 
 
 @pytest.mark.parametrize(
     "text", ["20A 5:1", "20a 5", "20 5", "HPN 20A 5", "HPN 20A-5", "20A i=5", "20A-5 : 1", "hpn 20a i 5"]
 )
 def test_a_designation_as_people_type_it_is_read(catalogue: Catalogue, text: str) -> None:
-    found = catalogue.find(text)
+    result = catalogue.find(text)
 
-    assert found is not None
-    assert found.designation == "HPN-20A-5"
+    assert result is not None
+    assert result.designation == "HPN-20A-5"
 
 
 @pytest.mark.parametrize(

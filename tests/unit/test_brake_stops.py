@@ -55,11 +55,11 @@ def test_a_brake_gives_each_gear_a_stop_of_its_own(catalogue: Catalogue) -> None
 
 
 def test_the_time_in_which_the_brake_closes_never_lowers_the_torque(catalogue: Catalogue) -> None:
-    told = [
+    values = [
         candidate(answer(braking({"torque_Nm": 8, "rise_time_s": rise}), catalogue), GEAR)["stop_torque_Nm"]
         for rise in (0, 0.004, 0.4)
     ]
-    assert told[0] == told[1] == told[2]
+    assert values[0] == values[1] == values[2]
 
 
 def test_a_dynamic_factor_of_the_user_s_own_takes_the_place_of_the_bound(catalogue: Catalogue) -> None:
@@ -129,8 +129,8 @@ CRANE: Json = {
 
 
 def crane(brake: Json, ratios: list[int]) -> Json:
-    asked = {"ratios": ratios, "motor": {"inertia_kgm2": 0.0015}}
-    return {"duty_cycle": {"motion": CRANE}, "emergency_stop": {"brake": brake}, "requirements": asked}
+    document = {"ratios": ratios, "motor": {"inertia_kgm2": 0.0015}}
+    return {"duty_cycle": {"motion": CRANE}, "emergency_stop": {"brake": brake}, "requirements": document}
 
 
 WEIGHT_NM = 12 * 9.80665 * 0.25
@@ -159,9 +159,9 @@ def test_a_brake_that_does_not_stop_or_hold_the_load_is_told(catalogue: Catalogu
     """T_v is 16.7 Nm and T_d 19.7 Nm at the gear: 15, 18 and 30 Nm of the brake stop it, hold it, or do neither."""
     application = crane({"torque_Nm": 3}, [5, 10])
     reply = answer(application, catalogue)
-    found = check(reply, GEAR, "momentary_peak_torque")
+    result = check(reply, GEAR, "momentary_peak_torque")
 
-    assert (found["status"], found["utilisation"]) == ("fail", None)
+    assert (result["status"], result["utilisation"]) == ("fail", None)
     assert candidate(reply, GEAR)["reason"].startswith("The brake does not stop the load")
     assert candidate(reply, GEAR)["stopping_time_s"] is None
     assert "brake_does_not_hold" not in notices(reply)
@@ -209,10 +209,10 @@ def test_a_stop_harder_than_g_lets_the_rope_of_a_counterweight_go_slack(
     rack: Json = {"type": "rack_and_pinion", "mass_kg": mass_kg, "diameter_mm": 60, "incline_deg": 90}
     rack["counterweight_kg"] = counterweight_kg
     moves = [{"profile": "trapezoidal", "distance_mm": 300, "time_s": 2}]
-    asked = {"ratios": [5], "sizes": ["20A"], "motor": {"inertia_kgm2": 0.0015}}
+    document = {"ratios": [5], "sizes": ["20A"], "motor": {"inertia_kgm2": 0.0015}}
     stop = {"brake": {"torque_Nm": 6}}
     application = {"duty_cycle": {"motion": {"mechanism": rack, "moves": moves}}, "emergency_stop": stop}
-    reply = answer(application | {"requirements": asked}, catalogue)
+    reply = answer(application | {"requirements": document}, catalogue)
     J, a = (mass_kg + counterweight_kg) * 0.03**2, 4.5 * 0.3 / 2**2
     T_o = (mass_kg - counterweight_kg) * 9.80665 * 0.03 + J / 0.03 * a
     slowing = (candidate(reply, GEAR)["stop_torque_Nm"] + T_o) / J * 0.03
@@ -220,7 +220,7 @@ def test_a_stop_harder_than_g_lets_the_rope_of_a_counterweight_go_slack(
     assert (slowing > 9.80665) == is_told
     assert ("counterweight_slack" in notices(reply)) == is_told
     rack.pop("counterweight_kg")
-    assert "counterweight_slack" not in notices(answer(application | {"requirements": asked}, catalogue))
+    assert "counterweight_slack" not in notices(answer(application | {"requirements": document}, catalogue))
 
 
 def hanging(mass_kg: float, brake: Json, **requirements: Any) -> Json:
@@ -241,10 +241,10 @@ def test_a_brake_below_gravity_fails_whether_the_inertia_of_the_motor_is_known_o
 ) -> None:
     """18 kg at 250 mm: 44.1 Nm, against 40 Nm of the brake at the output, with which T_k is below T_M."""
     reply = answer(hanging(18, {"torque_Nm": 8}, **motor), catalogue)
-    found = check(reply, GEAR, "momentary_peak_torque")
+    result = check(reply, GEAR, "momentary_peak_torque")
 
-    assert found["demand"] < found["limit"]
-    assert (found["status"], found["utilisation"]) == ("fail", None)
+    assert result["demand"] < result["limit"]
+    assert (result["status"], result["utilisation"]) == ("fail", None)
 
 
 @pytest.mark.parametrize("motor", [{}, {"motor": {"inertia_kgm2": 0.0015}}])
@@ -259,9 +259,9 @@ def test_no_brake_is_offered_where_the_load_alone_exceeds_the_torque_in_every_st
     """Friction of 160 Nm that the gear bears before the stop: T_k is above T_R of 149 Nm at every brake."""
     mechanism = {"type": "rotary", "inertia_kgm2": 0.005, "friction_torque_Nm": 160}
     motion = {"mechanism": mechanism, "moves": [{"profile": "trapezoidal", "angle_deg": 90, "time_s": 2}]}
-    asked = {"ratios": [5], "motor": {"inertia_kgm2": 0.01}}
+    document = {"ratios": [5], "motor": {"inertia_kgm2": 0.01}}
     stop = {"brake": {"torque_Nm": 8}}
-    reply = answer({"duty_cycle": {"motion": motion}, "emergency_stop": stop, "requirements": asked}, catalogue)
+    reply = answer({"duty_cycle": {"motion": motion}, "emergency_stop": stop, "requirements": document}, catalogue)
     gear = candidate(reply, GEAR)
 
     assert gear["stop_torque_Nm"] > 160

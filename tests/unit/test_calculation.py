@@ -58,7 +58,7 @@ def test_speeds_enter_the_bearings_equivalent_load_by_magnitude_as_symbols_too(c
 
 
 @pytest.mark.parametrize(
-    ("given", "lines"),
+    ("inputs", "lines"),
     [
         ({}, 1),
         ({"shaft_centre_mm": 21}, 1),
@@ -67,9 +67,9 @@ def test_speeds_enter_the_bearings_equivalent_load_by_magnitude_as_symbols_too(c
         ({"axial_radius_mm": 40}, 0),
     ],
 )
-def test_a_lever_has_an_equation_where_one_acts(given: Json, lines: int, catalogue: Catalogue) -> None:
+def test_a_lever_has_an_equation_where_one_acts(inputs: Json, lines: int, catalogue: Catalogue) -> None:
     """Without the shaft's centre nothing can be worked out."""
-    load = {"radial_N": 500.0, "axial_N": 100.0} | given
+    load = {"radial_N": 500.0, "axial_N": 100.0} | inputs
     step = steps_of(cycle(phase(10, 100), output_load=load), "HPN-20A-5", catalogue).get("output_bearing_load")
     assert len(step.lines if step else ()) == lines
 
@@ -77,8 +77,8 @@ def test_a_lever_has_an_equation_where_one_acts(given: Json, lines: int, catalog
 def test_the_peak_of_a_phase_is_said_to_count_where_it_does(catalogue: Catalogue) -> None:
     varying = cycle(phase(10, 100, peak_torque_Nm=20), emergency_stop={"torque_Nm": 30})
     steps = steps_of(varying, "HPN-20A-5", catalogue)
-    told = {code for code, step in steps.items() if any("its peak counts here" in note.text for note in step.notes)}
-    assert told == {"repeated_peak_torque", "maximum_input_speed"}
+    names = {code for code, step in steps.items() if any("its peak counts here" in note.text for note in step.notes)}
+    assert names == {"repeated_peak_torque", "maximum_input_speed"}
 
 
 def test_torques_that_an_equation_picks_are_said_beside_it(catalogue: Catalogue) -> None:
@@ -157,24 +157,24 @@ def test_a_motor_s_torques_are_those_of_its_checks_where_the_gear_has_inertia_an
     catalogue = supplemented(gears=OWN, **curve)
     document = {"duty_cycle": cycle_of, "requirements": {"motor": LIMITS | inertia, "ratios": [5]} | eta}
     steps = steps_of(document, "HPN-20A-5", catalogue)
-    found = select(Application.model_validate(document), catalogue).candidate("HPN-20A-5")
+    results = select(Application.model_validate(document), catalogue).candidate("HPN-20A-5")
 
-    assert found is not None
+    assert results is not None
     for code in ("motor_peak_torque", "motor_rated_torque"):
-        demand = next(check.demand for check in found.checks if check.code == code)
+        demand = next(check.demand for check in results.checks if check.code == code)
         assert steps[code].lines[0].result.value == pytest.approx(demand, rel=1e-12)
         assert value_of(steps[code].lines[0].formula) == pytest.approx(demand, rel=1e-12)
 
 
-@pytest.mark.parametrize(("cells", "said"), [("0.002,", True), (",0.5", True), (",", False)])
+@pytest.mark.parametrize(("cells", "has_message"), [("0.002,", True), (",0.5", True), (",", False)])
 def test_what_a_supplement_says_of_the_gear_is_told_beside_the_motors_torque(
-    supplemented: Supplement, cells: str, said: bool
+    supplemented: Supplement, cells: str, has_message: bool
 ) -> None:
     catalogue = supplemented(gears=f"size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n20A,5,1,{cells},own\n")
     motor = LIMITS | {"inertia_kgm2": 0.0004}
     document = {"duty_cycle": {"motion": TURNING}, "requirements": {"motor": motor, "ratios": [5]}}
     step = steps_of(document, "HPN-20A-5", catalogue)["motor_peak_torque"]
-    assert (OWN_FIGURES in [note.template for note in step.notes]) is said
+    assert (OWN_FIGURES in [note.template for note in step.notes]) is has_message
 
 
 def test_texts_in_a_formula_are_escaped() -> None:

@@ -234,8 +234,8 @@ def test_a_missing_row_of_a_rated_size_is_named(folder: Path, name: str, key: st
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
     path.write_text("".join(line for n, line in enumerate(lines) if n != 1), encoding="utf-8")  # the first of 11A
 
-    said = rf"ratings\.csv, line 2, column size: {name} has no row of {key}, but 11A is rated$"
-    with pytest.raises(CatalogueError, match=said):
+    message = rf"ratings\.csv, line 2, column size: {name} has no row of {key}, but 11A is rated$"
+    with pytest.raises(CatalogueError, match=message):
         load_catalogue(folder)
 
 

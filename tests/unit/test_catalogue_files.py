@@ -200,5 +200,5 @@ def test_numbers_of_stages_stand_where_they_are_printed(catalogue: Catalogue) ->
     printed = {"11A": "table 10.1, page 10", "14A": "table 10.2, page 10", "20A": "table 12.1, page 12"}
     printed |= {"32A": "table 12.2, page 12", "40A": "table 9.1, page 9"}
     assert {(gear.size, gear.sources["stages"]) for gear in catalogue.gears} == set(printed.items())
-    [said] = {gear.note for gear in catalogue.gears if gear.size == "40A"}
-    assert said and "stages are taken to be those of the other sizes" in said
+    [message] = {gear.note for gear in catalogue.gears if gear.size == "40A"}
+    assert message and "stages are taken to be those of the other sizes" in message

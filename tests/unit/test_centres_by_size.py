@@ -38,7 +38,7 @@ def read(query: str, marker: str = "") -> Form:
 
 
 @pytest.mark.parametrize(
-    ("given", "taken"),
+    ("inputs", "taken"),
     [
         (21, 21.0),
         ({"20A": 21, "others": 18}, {"20A": 21.0, "others": 18.0}),
@@ -50,16 +50,16 @@ def read(query: str, marker: str = "") -> Form:
         (None, None),
     ],
 )
-def test_a_centre_is_a_number_or_an_object_by_size(given: Any, taken: Any) -> None:
+def test_a_centre_is_a_number_or_an_object_by_size(inputs: Any, taken: Any) -> None:
     """An object without a size says no more than a number, or nothing; sizes stand in one order."""
-    load = OutputLoad(radial_N=1, shaft_centre_mm=given)
+    load = OutputLoad(radial_N=1, shaft_centre_mm=inputs)
     assert load.shaft_centre_mm == taken
     assert not isinstance(taken, dict) or list(load.shaft_centre_mm) == list(taken)  # type: ignore[arg-type]
     assert OutputLoad.model_validate_json(load.model_dump_json()) == load
 
 
 @pytest.mark.parametrize(
-    ("given", "place", "code"),
+    ("inputs", "place", "code"),
     [
         (0, (), "greater_than"),
         (True, (), "shaft_centre"),
@@ -73,15 +73,15 @@ def test_a_centre_is_a_number_or_an_object_by_size(given: Any, taken: Any) -> No
         ({str(k): 1 for k in range(101)}, (), "too_long"),
     ],
 )
-def test_a_wrong_centre_is_refused_where_it_stands(given: Any, place: tuple[str, ...], code: str) -> None:
+def test_a_wrong_centre_is_refused_where_it_stands(inputs: Any, place: tuple[str, ...], code: str) -> None:
     with pytest.raises(ValidationError) as refused:
-        OutputLoad(radial_N=1, shaft_centre_mm=given)
+        OutputLoad(radial_N=1, shaft_centre_mm=inputs)
     [fault] = faults_of(refused.value)
     assert (fault.location, fault.code) == (("shaft_centre_mm", *place), code)
 
 
 @pytest.mark.parametrize(
-    ("size", "said"),
+    ("size", "message"),
     [
         ("20B", f"the catalogue has no 20B (available: {SIZES}, others)"),
         ("other", f"the catalogue has no other; it looks like others (available: {SIZES}, others)"),
@@ -90,11 +90,11 @@ def test_a_wrong_centre_is_refused_where_it_stands(given: Any, place: tuple[str,
     ],
 )
 def test_an_unknown_size_is_an_input_error_that_names_those_there_are(
-    size: str, said: str, catalogue: Catalogue
+    size: str, message: str, catalogue: Catalogue
 ) -> None:
     with pytest.raises(InputError) as refused:
         select(Application.model_validate(off_centre({size: 21})), catalogue)
-    assert refused.value.problems == ((("output_load", "shaft_centre_mm", size), said),)
+    assert refused.value.problems == ((("output_load", "shaft_centre_mm", size), message),)
 
 
 def test_the_field_keeps_the_bounds_of_its_number() -> None:
@@ -147,7 +147,7 @@ def test_the_calculation_says_which_centre_counts(
     catalogue = supplemented(sizes=columns + f"20A,,,,,,,{by_supplement},,drawing\n")
     step = steps_of(off_centre(centre), "HPN-20A-5", catalogue)["output_bearing_load"]
 
-    assert note in [said.text for said in step.notes]
+    assert note in [message.text for message in step.notes]
     assert step.comparisons[0].value == pytest.approx(400 * 45 / 21 / 1800, rel=1e-12)
 
 
@@ -195,7 +195,7 @@ def test_a_wrong_centre_of_a_link_is_told_beside_its_field(query: str, said: str
 
 
 @pytest.mark.parametrize(
-    ("marker", "typed", "centre", "shown"),
+    ("marker", "typed", "centre", "text"),
     [
         ("de", "20A: 21,5; übrige: 18", {"20A": 21.5, "others": 18.0}, "20A: 21,5; übrige: 18"),
         ("de", "others: 18;20A:21,5", {"20A": 21.5, "others": 18.0}, "übrige: 18; 20A: 21,5"),
@@ -205,23 +205,23 @@ def test_a_wrong_centre_of_a_link_is_told_beside_its_field(query: str, said: str
     ],
 )
 def test_the_field_takes_and_shows_the_words_and_units_of_its_reader(
-    marker: str, typed: str, centre: Any, shown: str
+    marker: str, typed: str, centre: Any, text: str
 ) -> None:
     form = read(f"T=40&n=250&t=0.3&FR=400&xR=45&xc={typed}", marker)
     load = form.application.output_load if form.application else None
     assert (load.shaft_centre_mm if load else None) == (None if centre is None else pytest.approx(centre, rel=1e-12))
-    assert for_reader(form, Reader.of_marker(marker)).texts["xc"] == shown
+    assert for_reader(form, Reader.of_marker(marker)).texts["xc"] == text
 
 
 def test_a_centre_of_a_link_is_shown_in_the_units_of_the_reader_and_taken_back_to_the_last_digit() -> None:
-    shown = for_reader(read(f"{LINK}&xc=20A:21&xc=18"), Reader.of_marker("in"))
-    assert shown.texts["xc"] == "20A: 0.82677; others: 0.70866"
+    view = for_reader(read(f"{LINK}&xc=20A:21&xc=18"), Reader.of_marker("in"))
+    assert view.texts["xc"] == "20A: 0.82677; others: 0.70866"
     sent = parse(
         [
             *parse_qsl("T=40&n=250&t=0.3&FR=400&xR=45"),
-            ("xc", shown.texts["xc"]),
+            ("xc", view.texts["xc"]),
             ("written", "in"),
-            ("was", shown.was),
+            ("was", view.was),
         ]
     )
     assert sent.application and sent.application.output_load

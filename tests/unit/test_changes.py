@@ -88,9 +88,9 @@ def test_a_difference_in_a_phase_of_a_motion_says_which_and_what(catalogue: Cata
     phases[3] = structs.replace(phases[3], peak_torque_Nm=99.0)
     duty = structs.replace(before.duty, phases=tuple(phases), load_inertia_kgm2=1.5)
 
-    found = changes(before, structs.replace(before, duty=duty), application, catalogue)
+    result = changes(before, structs.replace(before, duty=duty), application, catalogue)
 
-    assert [(each.phase, each.row.head.named.name, each.numbers[1]) for each in found] == [
+    assert [(each.phase, each.row.head.named.name, each.numbers[1]) for each in result] == [
         (4, "Peak torque", "99"),
         (None, "Inertia of the load", "1.5"),
     ]

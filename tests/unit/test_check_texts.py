@@ -68,8 +68,8 @@ def test_a_remedy_has_words_for_every_check() -> None:
     not_in_closed_form = {*MOTOR_TORQUE_CHECKS, "motor_speed", "motor_rated_speed"}
 
     for check in CHECKS:
-        told = [bool(check.moves), "{value}" in check.accepted, check.code in of_its_own].count(True)
-        assert told == (2 if check.code in not_in_closed_form else 1), check.code
+        notice = [bool(check.moves), "{value}" in check.accepted, check.code in of_its_own].count(True)
+        assert notice == (2 if check.code in not_in_closed_form else 1), check.code
         assert not check.accepted or (check.trigger and (suffix_of(check.trigger) or not check.unit)), check.code
 
 

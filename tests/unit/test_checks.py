@@ -72,9 +72,9 @@ def test_a_limit_passes_when_met_and_within_rounding_and_fails_beyond(catalogue:
         (1.001, "fail"),
         (0.9, "pass"),
     ):
-        found = check(answer(AT[code](x), catalogue), GEAR, code)
-        assert found["utilisation"] == pytest.approx(x, rel=3e-15, abs=1e-14)
-        assert found["status"] == expected, x
+        result = check(answer(AT[code](x), catalogue), GEAR, code)
+        assert result["utilisation"] == pytest.approx(x, rel=3e-15, abs=1e-14)
+        assert result["status"] == expected, x
 
 
 @pytest.mark.parametrize("code", AT)
@@ -99,23 +99,23 @@ def test_the_expected_number_of_stops_may_be_the_allowed_number_and_no_more(cata
     only = {"sizes": ["11A"], "ratios": [10]}
     for extra, expected in ((0, "pass"), (10**4 - count, "pass"), (10**4 - count + 1, "fail")):
         stop = {"torque_Nm": 27, "count": count + extra}
-        found = check(
+        result = check(
             answer(cycle(phase(1, 1), emergency_stop=stop, requirements=only), catalogue),
             "HPN-11A-10",
             "momentary_peak_count",
         )
-        assert (found["limit"], found["status"]) == (10**4, expected)
-        assert found["utilisation"] == (count + extra) / 10**4
+        assert (result["limit"], result["status"]) == (10**4, expected)
+        assert result["utilisation"] == (count + extra) / 10**4
 
 
 def test_every_requirement_is_checked_or_enters_what_is_checked() -> None:
-    asked = {check.trigger for check in CHECKS} | {check.instead for check in CHECKS}
+    names = {check.trigger for check in CHECKS} | {check.instead for check in CHECKS}
     entering = {"utilisation", "efficiency", "load_inertia_kgm2", "motor.inertia_kgm2", "position_radius_mm"}
     entering |= {"rest_friction_Nm", "worst_case_utilisation"}
     entering |= {"motor.stall_torque_Nm", "motor.weight_kg"}  # bound of the curve; weight of the pair
-    wanted = {".".join(path) for path in NUMBERS if path[0] == "requirements"}
+    values = {".".join(path) for path in NUMBERS if path[0] == "requirements"}
 
-    assert wanted - asked == {f"requirements.{name}" for name in entering}
+    assert values - names == {f"requirements.{name}" for name in entering}
 
 
 def test_where_not_one_stop_is_allowed_even_none_expected_fails_without_a_utilisation(catalogue: Catalogue) -> None:
@@ -123,9 +123,9 @@ def test_where_not_one_stop_is_allowed_even_none_expected_fails_without_a_utilis
     for count in (0, 1):
         application = cycle(phase(1, 1), emergency_stop={"torque_Nm": 52, "count": count})
         reply = answer(application, catalogue)
-        found = check(reply, "HPN-11A-10", "momentary_peak_count")
-        assert (found["demand"], found["limit"], found["utilisation"]) == (count, 0, None)
-        assert found["status"] == "fail"
+        result = check(reply, "HPN-11A-10", "momentary_peak_count")
+        assert (result["demand"], result["limit"], result["utilisation"]) == (count, 0, None)
+        assert result["status"] == "fail"
         gear = candidate(reply, "HPN-11A-10")
         assert (gear["status"], gear["utilisation"]) == ("unsuitable", None)
         assert gear["governing_check"] == "momentary_peak_count"
@@ -155,21 +155,21 @@ def test_a_tie_for_governing_goes_to_the_first_check(catalogue: Catalogue) -> No
     assert candidate(reply, GEAR)["governing_check"] == "average_torque"
 
 
-@pytest.mark.parametrize(("asked", "limit", "used"), [(10, 0, 0.5), (20, 40, 0), (35, 40, 0.75), (-5, 0, 1.25)])
+@pytest.mark.parametrize(("question", "limit", "used"), [(10, 0, 0.5), (20, 40, 0), (35, 40, 0.75), (-5, 0, 1.25)])
 def test_the_limit_of_a_temperature_is_the_end_of_the_range_that_it_is_nearer_to(
-    catalogue: Catalogue, asked: float, limit: float, used: float
+    catalogue: Catalogue, question: float, limit: float, used: float
 ) -> None:
     """0 to 40 °C: the middle is 20, half of the range 20."""
-    found = check(answer(with_wish(ambient_temperature_degC=asked), catalogue), GEAR, "ambient_temperature")
+    result = check(answer(with_wish(ambient_temperature_degC=question), catalogue), GEAR, "ambient_temperature")
 
-    assert (found["demand"], found["limit"], found["utilisation"]) == (asked, limit, used)
+    assert (result["demand"], result["limit"], result["utilisation"]) == (question, limit, used)
 
 
 def test_a_temperature_is_not_rated_where_no_range_is_published(catalogue: Catalogue) -> None:
     wishes = {"sizes": ["40A"], "ratios": [5], "ambient_temperature_degC": 20}
-    found = check(answer(cycle(phase(1, 1), requirements=wishes), catalogue), "HPN-40A-5", "ambient_temperature")
+    result = check(answer(cycle(phase(1, 1), requirements=wishes), catalogue), "HPN-40A-5", "ambient_temperature")
 
-    assert (found["limit"], found["utilisation"], found["status"]) == (None, None, "not_rated")
+    assert (result["limit"], result["utilisation"], result["status"]) == (None, None, "not_rated")
 
 
 def test_the_users_share_bounds_load_checks_alone() -> None:
@@ -180,8 +180,8 @@ def test_a_range_of_temperature_need_not_begin_at_zero(supplemented: Supplement)
     """10 to 40 °C: the middle is 25, half of the range 15."""
     colder = supplemented(sizes=SIZES + "20A,,,10,40,,,,mine\n")
     used = [
-        check(answer(with_wish(ambient_temperature_degC=asked), colder), GEAR, "ambient_temperature")["utilisation"]
-        for asked in (10, 25, 31, 0)
+        check(answer(with_wish(ambient_temperature_degC=case), colder), GEAR, "ambient_temperature")["utilisation"]
+        for case in (10, 25, 31, 0)
     ]
 
     assert used == [1, 0, 0.4, pytest.approx(5 / 3, rel=1e-15)]

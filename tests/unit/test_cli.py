@@ -228,9 +228,9 @@ def test_a_stream_that_a_shell_takes_away_is_a_line_at_most(case: str) -> None:
     command, code, error = SHELL[case]
     path = f"{Path(sys.executable).parent}:/usr/bin:/bin"
     environment = {"PATH": path, "INPUT": orjson.dumps(worked_example()).decode()}
-    done = subprocess.run(["sh", "-c", command], env=environment, capture_output=True, text=True, timeout=60)
+    outcome = subprocess.run(["sh", "-c", command], env=environment, capture_output=True, text=True, timeout=60)
 
-    assert (done.returncode, done.stderr) == (code, error)
+    assert (outcome.returncode, outcome.stderr) == (code, error)
 
 
 def test_an_interruption_ends_it_without_a_word(tmp_path: Path) -> None:
@@ -298,7 +298,7 @@ def test_a_supplement_is_used_and_a_wrong_setting_is_a_sentence(
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         ({"duty_cycle": {"phases": []}}, "/duty_cycle/phases: must have at least 1 item, not 0"),
         (
@@ -311,9 +311,11 @@ def test_a_supplement_is_used_and_a_wrong_setting_is_a_sentence(
         ),
     ],
 )
-def test_faults_that_pydantic_finds_are_said_in_plain_words(wrong: Json, said: str, file: Path, capsys: Output) -> None:
+def test_faults_that_pydantic_finds_are_said_in_plain_words(
+    wrong: Json, message: str, file: Path, capsys: Output
+) -> None:
     assert main(["select", write(file, wrong)]) == 2
-    assert capsys.readouterr().err == f"{said}\n"
+    assert capsys.readouterr().err == f"{message}\n"
 
 
 def test_a_wrong_setting_is_named_as_it_was_given(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:

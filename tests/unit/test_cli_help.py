@@ -70,11 +70,11 @@ def test_help_has_every_setting_with_its_default_and_every_exit_code(capsys: Out
         main(["--help"])
 
     out = capsys.readouterr().out
-    shown = dict(re.findall(r"^  (HPN_[A-Z_]+)(?: \((.*)\))?$", out, re.M))
-    assert set(shown) == {f"HPN_{name.upper()}" for name in Settings.model_fields}
-    assert (shown["HPN_PORT"], shown["HPN_API_KEYS"]) == ("8000", "")
-    assert shown["HPN_GUARDED"] == "batch,deleting,listing,writing"
-    assert shown["HPN_DATABASE_URL"] == "sqlite:///hpn.sqlite3"
+    view = dict(re.findall(r"^  (HPN_[A-Z_]+)(?: \((.*)\))?$", out, re.M))
+    assert set(view) == {f"HPN_{name.upper()}" for name in Settings.model_fields}
+    assert (view["HPN_PORT"], view["HPN_API_KEYS"]) == ("8000", "")
+    assert view["HPN_GUARDED"] == "batch,deleting,listing,writing"
+    assert view["HPN_DATABASE_URL"] == "sqlite:///hpn.sqlite3"
     words = " ".join(out.split())
     assert all((field.description or "?") in words for field in Settings.model_fields.values())
     table = (Path(__file__).parents[2] / "docs/command-line.md").read_text()

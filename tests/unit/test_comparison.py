@@ -20,16 +20,16 @@ def selected(application: Json, catalogue: Catalogue) -> Selection:
 
 
 def candidate(selection: Selection, designation: str) -> Candidate:
-    found = selection.candidate(designation)
-    assert found is not None
-    return found
+    result = selection.candidate(designation)
+    assert result is not None
+    return result
 
 
 def compared(application: Json, catalogue: Catalogue, *designations: str) -> dict[str, Row]:
     """Figures of some gears side by side, by their places."""
     selection = selected(application, catalogue)
-    asked = Application.model_validate(application)
-    accounts = [Account(selection, candidate(selection, name), asked, catalogue) for name in designations]
+    question = Application.model_validate(application)
+    accounts = [Account(selection, candidate(selection, name), question, catalogue) for name in designations]
     rows = [row for group in groups_of(accounts) for row in group.rows]
     return {row.head.code: row for row in rows if isinstance(row, Row)}
 
@@ -73,11 +73,11 @@ def test_a_gear_is_better_than_the_reference_where_its_figure_is_the_smaller_or_
 
 def test_rows_in_which_all_are_alike_stand_at_the_foot_and_no_others(catalogue: Catalogue) -> None:
     """HPN-20A-5 and HPN-20A-7: one housing and one set of speeds (table 12.1), other ratings and figures."""
-    selection, asked = (
+    selection, case = (
         selected(worked_example(requirements={}), catalogue),
         Application.model_validate(worked_example(requirements={})),
     )
-    accounts = [Account(selection, candidate(selection, f"HPN-20A-{i}"), asked, catalogue) for i in (5, 7)]
+    accounts = [Account(selection, candidate(selection, f"HPN-20A-{i}"), case, catalogue) for i in (5, 7)]
     *others, foot = groups_of(accounts)
 
     assert {row.standings for row in foot.rows} == {("reference", "alike")}
@@ -87,8 +87,8 @@ def test_rows_in_which_all_are_alike_stand_at_the_foot_and_no_others(catalogue: 
 
 
 def test_each_check_and_each_published_figure_stands_in_the_comparison_once(catalogue: Catalogue) -> None:
-    selection, asked = selected(worked_example(), catalogue), Application.model_validate(worked_example())
-    accounts = [Account(selection, candidate(selection, f"HPN-{size}-5"), asked, catalogue) for size in ("14A", "20A")]
+    selection, case = selected(worked_example(), catalogue), Application.model_validate(worked_example())
+    accounts = [Account(selection, candidate(selection, f"HPN-{size}-5"), case, catalogue) for size in ("14A", "20A")]
     codes = [row.head.code for group in groups_of(accounts) for row in group.rows]
     known = [line.code for line in ranged(accounts[0].published) if line.value is not None]
 
@@ -131,14 +131,14 @@ def test_best_compromises_are_those_that_no_other_suitable_gear_outdoes(catalogu
 
 def test_an_unrated_gear_is_not_unlimited_though_it_fails_a_property_check(catalogue: Catalogue) -> None:
     """HPN-40A has a published backlash above 4 arcmin and no ratings: unsuitable, not unrated."""
-    asked = cycle(phase(100, 10), emergency_stop={"torque_Nm": 160}, requirements={"backlash_arcmin": 4})
-    selection = selected(asked, catalogue)
+    question = cycle(phase(100, 10), emergency_stop={"torque_Nm": 160}, requirements={"backlash_arcmin": 4})
+    selection = selected(question, catalogue)
     gear = candidate(selection, "HPN-40A-5")
 
     assert gear.status == "unsuitable"
     assert not gear.is_unlimited("life_L10_h")
     assert not gear.is_unlimited("momentary_peak_count")
-    rows = compared(asked, catalogue, "HPN-40A-5", "HPN-20A-5")
+    rows = compared(question, catalogue, "HPN-40A-5", "HPN-20A-5")
     assert values(rows["candidate.life_L10_h"])[0] is None
     stops = rows["candidate.momentary_peak_count"]
     assert values(stops)[0] is None and stops.standings == ("reference", "")
@@ -164,10 +164,10 @@ def test_without_a_torque_the_life_is_unlimited_and_without_a_stop_there_is_no_c
 def test_a_bearing_without_points_of_its_curve_has_no_life_to_compare(supplemented: Supplement) -> None:
     points = "size,load_coefficient,axial_N,radial_N,source\n20A,1,2200,0,p\n20A,1,1500,900,p\n20A,1,0,1800,p\n"
     filled = supplemented(bearing_envelopes=points)
-    asked = cycle(phase(10, 100), output_load={"radial_N": 500, "model": "digitised"})
-    life = compared(asked, filled, "HPN-20A-5", "HPN-14A-5")["candidate.bearing_life_L50_h"]
+    question = cycle(phase(10, 100), output_load={"radial_N": 500, "model": "digitised"})
+    life = compared(question, filled, "HPN-20A-5", "HPN-14A-5")["candidate.bearing_life_L50_h"]
 
-    assert values(life) == [candidate(selected(asked, filled), "HPN-20A-5").bearing_life_L50_h, None]
+    assert values(life) == [candidate(selected(question, filled), "HPN-20A-5").bearing_life_L50_h, None]
     assert life.standings == ("reference", "")
 
 

@@ -39,17 +39,17 @@ def test_an_own_value_that_equals_a_default_survives_a_common_one_that_does_not(
 
 def test_null_and_absent_are_inherited_and_without_is_not() -> None:
     common = {"requirements": {"utilisation": 0.8, "life_h": 20000.0}}
-    for asked in ({}, {"utilisation": None}, None):
-        found = resolve(worked_example(requirements=asked), common)
-        assert found.whole["requirements"] == common["requirements"]
+    for case in ({}, {"utilisation": None}, None):
+        result = resolve(worked_example(requirements=case), common)
+        assert result.whole["requirements"] == common["requirements"]
 
-    found = resolve(worked_example(), common, ["requirements.life_h"])
-    assert found.whole["requirements"] == {"utilisation": 0.8}
+    result = resolve(worked_example(), common, ["requirements.life_h"])
+    assert result.whole["requirements"] == {"utilisation": 0.8}
 
 
 def test_a_list_is_replaced_whole() -> None:
-    found = resolve(worked_example(requirements={"ratios": [10]}), {"requirements": {"ratios": [4, 5]}})
-    assert found.whole["requirements"] == {"ratios": [10]}
+    result = resolve(worked_example(requirements={"ratios": [10]}), {"requirements": {"ratios": [4, 5]}})
+    assert result.whole["requirements"] == {"ratios": [10]}
 
 
 def test_centres_by_size_are_one_value_that_an_axis_inherits_or_replaces() -> None:
@@ -198,9 +198,9 @@ def test_a_common_tolerance_is_inherited_replaced_whole_and_may_not_hold() -> No
     common = {"tolerances": {"torque_Nm": TEN, "pause_s": TWENTY}}
     own = worked_example(tolerances={"pause_s": TEN})
 
-    found = resolve(own, common)
-    assert found.whole["tolerances"] == {"torque_Nm": TEN, "pause_s": TEN} and found.application is not None
-    assert found.inherited == {"tolerances.torque_Nm"}
+    result = resolve(own, common)
+    assert result.whole["tolerances"] == {"torque_Nm": TEN, "pause_s": TEN} and result.application is not None
+    assert result.inherited == {"tolerances.torque_Nm"}
     assert resolve(own, common, ["tolerances.torque_Nm"]).whole["tolerances"] == {"pause_s": TEN}
     assert resolve(worked_example(tolerances={"pause_s": None}), common).whole["tolerances"] == common["tolerances"]
 
@@ -208,16 +208,16 @@ def test_a_common_tolerance_is_inherited_replaced_whole_and_may_not_hold() -> No
 def test_an_axis_skips_a_common_tolerance_of_what_it_has_not() -> None:
     absent = ("motion.mechanism.mass_kg", "phases.7.torque_Nm", "requirements.load_inertia_kgm2")
     common = {"tolerances": dict.fromkeys(("torque_Nm", *absent), TEN)}
-    found = resolve(worked_example(), common)
-    assert found.application is not None and found.whole["tolerances"] == {"torque_Nm": TEN}
-    assert set(found.not_asked) == {f"tolerances.{name}" for name in absent}
+    result = resolve(worked_example(), common)
+    assert result.application is not None and result.whole["tolerances"] == {"torque_Nm": TEN}
+    assert set(result.not_asked) == {f"tolerances.{name}" for name in absent}
     own = resolve(worked_example(tolerances={"phases.7.torque_Nm": TEN}), {})
     assert own.application is None and own.faults[0][2] == "tolerance_path"
 
 
 def test_a_common_tolerance_beyond_a_bound_leaves_the_axis_open() -> None:
-    found = resolve(worked_example(), {"tolerances": {"speed_rpm": {"percent": 200.0}}})
-    assert found.application is None and found.faults[0][0] == ("tolerances", "speed_rpm")
+    result = resolve(worked_example(), {"tolerances": {"speed_rpm": {"percent": 200.0}}})
+    assert result.application is None and result.faults[0][0] == ("tolerances", "speed_rpm")
 
 
 @pytest.mark.parametrize("path", ["torque", "phases.x.torque_Nm", "requirements.utilisation", "duty_cycle.pause_s", ""])

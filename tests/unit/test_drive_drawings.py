@@ -33,9 +33,9 @@ def subject_of(document: Json, designation: str = "HPN-20A-5", catalogue: Catalo
 
 
 def candidate_of(subject: Subject) -> Candidate:
-    found = select(subject.application, subject.catalogue).candidate(subject.gear.designation)
-    assert found is not None
-    return found
+    result = select(subject.application, subject.catalogue).candidate(subject.gear.designation)
+    assert result is not None
+    return result
 
 
 def near(expected: list[Point], shown: Shown) -> object:
@@ -52,47 +52,47 @@ def flat(points: list[Point]) -> list[float]:
 
 def test_phases_and_averages_stand_at_their_torque_and_speed_within_the_limits_of_the_gear() -> None:
     subject = subject_of(TYPED)
-    shown = Shown(gear_plane(subject).drawing)
+    view = Shown(gear_plane(subject).drawing)
     gear, duty = subject.gear, subject.duty
 
-    assert sorted(shown.dots("load")) == [pytest.approx(p, abs=0.5) for p in [(0, 20), (250, 40), (660, 60)]]
+    assert sorted(view.dots("load")) == [pytest.approx(p, abs=0.5) for p in [(0, 20), (250, 40), (660, 60)]]
     means = [(duty.average_output_speed_rpm.item(), duty.average_torque_Nm.item())]
-    assert flat(shown.dots("equivalent")) == near(means, shown)
-    assert flat(shown.dots("mean")) == near([(500, 32)], shown)
-    assert flat(shown.line("span")[0]) == near([(500, 32), (660, 60)], shown)
+    assert flat(view.dots("equivalent")) == near(means, view)
+    assert flat(view.dots("mean")) == near([(500, 32)], view)
+    assert flat(view.line("span")[0]) == near([(500, 32), (660, 60)], view)
     assert gear.rated_torque_Nm and gear.average_input_speed_rpm and gear.maximum_input_speed_rpm
     n = gear.average_input_speed_rpm / 5
-    across, down = shown.line("mean")
-    assert flat(across) == near([(0, gear.rated_torque_Nm), (n, gear.rated_torque_Nm)], shown)
-    assert flat(down) == near([(n, gear.rated_torque_Nm), (n, 0)], shown)
-    assert flat(shown.line("limit")[-1])[::2] == near([(gear.maximum_input_speed_rpm / 5,) * 2], shown)
+    across, down = view.line("mean")
+    assert flat(across) == near([(0, gear.rated_torque_Nm), (n, gear.rated_torque_Nm)], view)
+    assert flat(down) == near([(n, gear.rated_torque_Nm), (n, 0)], view)
+    assert flat(view.line("limit")[-1])[::2] == near([(gear.maximum_input_speed_rpm / 5,) * 2], view)
 
 
 def test_a_limit_far_beyond_the_cycle_is_named_with_an_arrow_and_leaves_the_scale_to_the_cycle() -> None:
-    shown = Shown(gear_plane(subject_of(cycle(phase(2, 20))), Reader(language="de")).drawing, ",")
+    view = Shown(gear_plane(subject_of(cycle(phase(2, 20))), Reader(language="de")).drawing, ",")
 
-    assert shown.line("limit") == shown.line("mean") == []
-    named = [Shown.said(text) for text in shown.of("text", "beyond")]
+    assert view.line("limit") == view.line("mean") == []
+    named = [Shown.said(text) for text in view.of("text", "beyond")]
     gear = CATALOGUE.by_designation["HPN-20A-5"]
     assert named[0].startswith(f"↑ T_R {gear.repeated_peak_torque_Nm:g}".replace("T_R", "TR"))
     assert "→" in named[0]
-    assert shown.load((400 - 12, 26))[0] == pytest.approx(1.15 * 20, rel=1e-3)
+    assert view.load((400 - 12, 26))[0] == pytest.approx(1.15 * 20, rel=1e-3)
 
 
 def test_with_a_reserve_of_their_own_limits_are_drawn_where_it_puts_them() -> None:
-    shown = Shown(gear_plane(subject_of(TYPED | {"requirements": {"utilisation": 0.8}})).drawing)
+    view = Shown(gear_plane(subject_of(TYPED | {"requirements": {"utilisation": 0.8}})).drawing)
     gear = CATALOGUE.by_designation["HPN-20A-5"]
 
     assert gear.rated_torque_Nm
-    assert shown.line("mean")[0][0][1] == pytest.approx(0.8 * gear.rated_torque_Nm, abs=0.2)
-    assert "u·TN" in {Shown.said(text) for text in shown.of("text", "name")}
+    assert view.line("mean")[0][0][1] == pytest.approx(0.8 * gear.rated_torque_Nm, abs=0.2)
+    assert "u·TN" in {Shown.said(text) for text in view.of("text", "name")}
 
 
 @pytest.mark.parametrize("document", [TURNING, LIFTING])
 def test_the_curve_of_a_motion_goes_through_its_largest_torque_and_speed(document: Json) -> None:
     subject = subject_of(document)
-    shown = Shown(gear_plane(subject).drawing)
-    points = np.array([point for curve in shown.line("curve") for point in curve])
+    view = Shown(gear_plane(subject).drawing)
+    points = np.array([point for curve in view.line("curve") for point in curve])
 
     assert points[:, 0].max() == pytest.approx(subject.duty.maximum_output_speed_rpm.item(), rel=1e-3)
     assert points[:, 1].max() == pytest.approx(subject.duty.maximum_torque_Nm.item(), rel=1e-3)
@@ -108,12 +108,12 @@ def test_the_curve_of_a_motion_goes_through_its_largest_torque_and_speed(documen
 def test_peak_and_rms_at_the_motor_are_those_of_the_checks(document: Json, motor: Json) -> None:
     subject = subject_of(document | {"requirements": {"motor": motor, "efficiency": 0.85}})
     candidate = candidate_of(subject)
-    shown = Shown(motor_plane(subject).drawing)
+    view = Shown(motor_plane(subject).drawing)
 
-    points = [*(point for curve in shown.line("curve") for point in curve), *shown.dots("load")]
+    points = [*(point for curve in view.line("curve") for point in curve), *view.dots("load")]
     assert max(T for _, T in points) == pytest.approx(candidate.motor_peak_torque_Nm, rel=2e-3)
     assert max(n for n, _ in points) == pytest.approx(candidate.maximum_input_speed_rpm, rel=2e-3)
-    [(n, T)] = shown.dots("equivalent")
+    [(n, T)] = view.dots("equivalent")
     assert n == pytest.approx(candidate.average_input_speed_rpm, rel=2e-3)
     assert pytest.approx(candidate.motor_rated_torque_Nm, rel=5e-3) == T
 
@@ -147,9 +147,9 @@ def test_a_limit_next_to_the_edge_keeps_its_name() -> None:
     gear = CATALOGUE.by_designation["HPN-20A-4"]
     assert gear.maximum_input_speed_rpm
     fast = cycle(phase(40, 0.9 * gear.maximum_input_speed_rpm / 4)) | {"requirements": {"utilisation": 0.9}}
-    shown = Shown(gear_plane(subject_of(fast, gear.designation)).drawing)
+    view = Shown(gear_plane(subject_of(fast, gear.designation)).drawing)
 
-    assert "u·nin(max)/i" in {Shown.said(text) for text in shown.of("text", "name")}
+    assert "u·nin(max)/i" in {Shown.said(text) for text in view.of("text", "name")}
 
 
 def test_planes_say_in_words_what_they_show() -> None:
@@ -166,8 +166,8 @@ def test_planes_say_in_words_what_they_show() -> None:
 def test_what_follows_an_index_stands_on_the_line_again() -> None:
     """Shifts add up along a text: 3 down for the index, 3 up once behind it, and none for a letter without one."""
     element = runs(Element("g"), "name", (0.0, 0.0), [("limit", "n_av(max)/i 750"), ("limit", "T_R")])
-    shown = [(run.text, float(run.get("dy", "0"))) for run in element]
-    assert shown == [
+    values = [(run.text, float(run.get("dy", "0"))) for run in element]
+    assert values == [
         *(("n", 0.0), ("av(max)", 3.0), ("/", -3.0), ("i", 0.0), (" 750", 0.0)),
         *(("\N{EN SPACE}", 0.0), ("T", 0.0), ("R", 3.0)),
     ]

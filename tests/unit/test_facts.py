@@ -33,7 +33,7 @@ def test_a_table_or_equation_is_on_the_page_that_its_number_begins_with() -> Non
 
 
 @pytest.mark.parametrize(
-    "said",
+    "message",
     [
         "PYRONOC UNIVERSAL 00",
         "No additional lubrication is necessary",
@@ -53,12 +53,12 @@ def test_a_table_or_equation_is_on_the_page_that_its_number_begins_with() -> Non
         "80 °C",
     ],
 )
-def test_the_page_of_a_gear_says_it_with_its_source(said: str) -> None:
+def test_the_page_of_a_gear_says_it_with_its_source(message: str) -> None:
     with TestClient(create_app()) as client:
         page = client.get("/catalogue/HPN-20A-5").text
     handbook = page[page.index('id="handbook"') :]
     plain = unescape(re.sub(r"<[^>]*>", "", handbook)).replace("\u202f", " ")
-    assert said in plain
+    assert message in plain
     assert "section 4.3, p. 24" in plain
 
 

@@ -29,8 +29,8 @@ MOVED = [{"duty_cycle": {"motion": motion}} for motion in (ROTARY, BELT)]
 
 def with_nulls(model: BaseModel) -> Json:
     """Given fields of a model, with null for every field that was left out, in every object of it."""
-    given = {name: getattr(model, name) for name in model.model_fields_set}
-    return dict.fromkeys(type(model).model_fields) | {name: _with_nulls(value) for name, value in given.items()}
+    by_name = {name: getattr(model, name) for name in model.model_fields_set}
+    return dict.fromkeys(type(model).model_fields) | {name: _with_nulls(value) for name, value in by_name.items()}
 
 
 def _with_nulls(value: Any) -> Any:
@@ -39,21 +39,21 @@ def _with_nulls(value: Any) -> Any:
     return with_nulls(value) if isinstance(value, Model) else value
 
 
-@pytest.mark.parametrize("given", [WHOLE, *MOVED], ids=["whole", "rotary", "belt"])
-def test_a_null_for_any_field_that_may_be_left_out_counts_as_not_given(given: Json) -> None:
-    plain = Application.model_validate(given)
+@pytest.mark.parametrize("inputs", [WHOLE, *MOVED], ids=["whole", "rotary", "belt"])
+def test_a_null_for_any_field_that_may_be_left_out_counts_as_not_given(inputs: Json) -> None:
+    plain = Application.model_validate(inputs)
     sent = with_nulls(plain)
 
     assert sent["requirements"] is None or sent["requirements"]["utilisation"] is None
     assert Application.model_validate(sent) == plain
 
 
-@pytest.mark.parametrize("given", [WHOLE, *MOVED], ids=["whole", "rotary", "belt"])
-def test_a_null_for_a_default_is_kept_nowhere(given: Json) -> None:
+@pytest.mark.parametrize("inputs", [WHOLE, *MOVED], ids=["whole", "rotary", "belt"])
+def test_a_null_for_a_default_is_kept_nowhere(inputs: Json) -> None:
     """Saved application and digest are as if the field had been left out; nulls that were taken before stay."""
-    application = Application.model_validate(given | {"requirements": given.get("requirements"), "rank_by": None})
+    application = Application.model_validate(inputs | {"requirements": inputs.get("requirements"), "rank_by": None})
 
-    assert application.model_dump(exclude_unset=True) == Application.model_validate(given).model_dump(
+    assert application.model_dump(exclude_unset=True) == Application.model_validate(inputs).model_dump(
         exclude_unset=True
     )
 
@@ -75,7 +75,7 @@ def _motion(kind: Literal["rotary", "belt"], **move: Any) -> Json:
 
 
 @pytest.mark.parametrize(
-    ("given", "pointer", "near"),
+    ("inputs", "pointer", "near"),
     [
         (WHOLE | {"requirement": {}}, ("requirement",), "requirements"),
         (WHOLE | {"requirements": {"life": 20000}}, ("requirements", "life"), "life_h"),
@@ -90,10 +90,10 @@ def _motion(kind: Literal["rotary", "belt"], **move: Any) -> Json:
     ],
 )
 def test_a_misspelt_field_is_said_to_look_like_one_of_its_own_object(
-    given: Json, pointer: tuple[str | int, ...], near: str
+    inputs: Json, pointer: tuple[str | int, ...], near: str
 ) -> None:
     with pytest.raises(ValidationError) as refused:
-        Application.model_validate(given)
+        Application.model_validate(inputs)
 
     [fault] = faults_of(refused.value)
     assert (fault.location, fault.code) == (pointer, "extra_forbidden")
@@ -102,13 +102,13 @@ def test_a_misspelt_field_is_said_to_look_like_one_of_its_own_object(
 
 def test_other_errors_beside_a_misspelt_field_are_as_without_it() -> None:
     wrong = cycle(phase(1, 1) | {"duration_s": -1}, rank_by="price", output_load={"radial_N": 5, "model": 3})
-    found = []
-    for given in (wrong, wrong | {"rankby": "weight"}):
+    result = []
+    for inputs in (wrong, wrong | {"rankby": "weight"}):
         with pytest.raises(ValidationError) as refused:
-            SaveRequest.model_validate({"application": given})
-        found.append(faults_of(refused.value))
+            SaveRequest.model_validate({"application": inputs})
+        result.append(faults_of(refused.value))
 
-    plain, beside = found
+    plain, beside = result
     assert len(plain) == 3
     assert [fault for fault in beside if fault.location[-1] != "rankby"] == plain
     assert beside[-1].text == "is not a field of this object; it looks like rank_by"
@@ -127,10 +127,10 @@ def test_the_schema_lets_be_null_what_may_be_left_out(model: type[Model]) -> Non
     schema = model.model_json_schema()
     objects = [schema, *schema["$defs"].values()]
 
-    found = {
+    names = {
         name: ({"type": "null"} in entry.get("anyOf", entry.get("oneOf", ()))) == (name not in part.get("required", ()))
         for part in objects
         for name, entry in part.get("properties", {}).items()
     }
-    assert len(found) > 20
-    assert all(found.values()), found
+    assert len(names) > 20
+    assert all(names.values()), names

@@ -54,17 +54,17 @@ OWN = "size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n20A,5,1,0.002,0.
 
 
 @pytest.mark.parametrize("own", [{}, {"gears": OWN}], ids=["", "own inertia"])
-@pytest.mark.parametrize("asked", ASKED)
+@pytest.mark.parametrize("question", ASKED)
 @pytest.mark.parametrize("load", LOADS.values(), ids=LOADS)
 @pytest.mark.parametrize("designation", ["HPN-20A-5", "HPN-20A-15"])
 def test_use_of_a_motor_is_what_select_finds_with_it(
-    supplemented: Supplement, load: Json, asked: Json, designation: str, own: dict[str, str]
+    supplemented: Supplement, load: Json, question: Json, designation: str, own: dict[str, str]
 ) -> None:
     catalogue = supplemented(motors=MOTORS, efficiency=CURVE, **own)
-    application = application_of(load, asked)
+    application = application_of(load, question)
     uses = motors_on(application, catalogue.by_designation[designation], catalogue)
 
-    heavy = "inertia_ratio" in asked.get("motor", {})
+    heavy = "inertia_ratio" in question.get("motor", {})
     assert sorted(use.motor.designation for use in uses) == sorted(
         motor.designation
         for motor in catalogue.motors

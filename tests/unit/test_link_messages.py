@@ -93,8 +93,8 @@ def test_a_spelling_advised_in_place_of_a_number_is_taken(name: str, text: str) 
 def test_name_that_is_only_written_otherwise_is_proposed_itself(name: str, form: str) -> None:
     written = form.format(name)
     meant = "n" if name == "N" else name
-    said = [p.message.text for p in read(f"{PHASE}&{written}=1").problems]
-    assert any(text.endswith(f"did you mean {meant}?") for text in said)
+    values = [p.message.text for p in read(f"{PHASE}&{written}=1").problems]
+    assert any(text.endswith(f"did you mean {meant}?") for text in values)
 
 
 def test_minus_sign_of_a_word_processor_is_a_minus() -> None:
@@ -104,7 +104,7 @@ def test_minus_sign_of_a_word_processor_is_a_minus() -> None:
 
 
 @pytest.mark.parametrize(
-    ("link", "said"),
+    ("link", "message"),
     [
         ("T=40,32&n=250&t=0.3", "write 40.32; if 40 and 32 are meant, give two phases"),
         ("T=40&n=250,500&t=3", "write 250.500 or 250500; if 250 and 500 are meant, give two phases"),
@@ -114,12 +114,12 @@ def test_minus_sign_of_a_word_processor_is_a_minus() -> None:
         ("T=40&n=250&t=0.3&tp=10,25", "write 10.25"),
     ],
 )
-def test_a_comma_in_the_only_phase_may_stand_between_two_values(link: str, said: str) -> None:
-    assert list(found(link).values()) == [said]
+def test_a_comma_in_the_only_phase_may_stand_between_two_values(link: str, message: str) -> None:
+    assert list(found(link).values()) == [message]
 
 
 @pytest.mark.parametrize(
-    ("query", "said"),
+    ("query", "message"),
     [
         ("pn=a%E2%80%8Bb", "must not contain the invisible character U+200B ZERO WIDTH SPACE"),
         ("pn=a%0Ab", "must not contain control characters or line breaks"),
@@ -128,11 +128,11 @@ def test_a_comma_in_the_only_phase_may_stand_between_two_values(link: str, said:
     ],
 )
 @pytest.mark.parametrize("row", [PHASE, "mech=rotary&J=1&ms=9&mt=1&mv=triangular"])
-def test_a_name_keeps_the_rules_of_titles_and_stands_beside_each_row(row: str, query: str, said: str) -> None:
+def test_a_name_keeps_the_rules_of_titles_and_stands_beside_each_row(row: str, query: str, message: str) -> None:
     if row == PHASE:
-        assert found(f"{row}&{query}")["pn", int("T=1" in query)] == said
+        assert found(f"{row}&{query}")["pn", int("T=1" in query)] == message
     elif "T=1" not in query:
-        assert found(f"{row}&{query}") == {("pn", 0): said}
+        assert found(f"{row}&{query}") == {("pn", 0): message}
 
 
 def test_a_name_is_written_as_it_is_and_blank_where_a_phase_has_none() -> None:
@@ -158,7 +158,7 @@ def test_repeated_scalar_is_reported_and_kept() -> None:
 
 
 @pytest.mark.parametrize(
-    ("query", "name", "said"),
+    ("query", "name", "message"),
     [
         ("i=5,7", "i", "give one value per field: i=5&i=7"),
         ("i=4 5;7", "i", "give one value per field: i=4&i=5&i=7"),
@@ -168,9 +168,9 @@ def test_repeated_scalar_is_reported_and_kept() -> None:
     ],
 )
 def test_a_spelling_advised_in_place_of_several_or_broken_whole_numbers_is_taken(
-    query: str, name: str, said: str
+    query: str, name: str, message: str
 ) -> None:
-    assert found(f"{PHASE}&{query}") == {(name, 0 if name == "i" else None): said}
+    assert found(f"{PHASE}&{query}") == {(name, 0 if name == "i" else None): message}
 
 
 @pytest.mark.parametrize(

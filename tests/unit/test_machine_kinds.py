@@ -17,7 +17,7 @@ def _application(torque_Nm: float, speed_rpm: float, **requirements: Any) -> App
 
 
 def _machine(catalogue: Catalogue) -> list[Sought]:
-    asked = [
+    question = [
         _application(4, 300),
         _application(25, 120),
         _application(60, 80, ratios=[5, 7]),
@@ -26,7 +26,7 @@ def _machine(catalogue: Catalogue) -> list[Sought]:
     ]
     return [
         Sought(number, number, application, select(application, catalogue).selected)
-        for number, application in enumerate(asked, 1)
+        for number, application in enumerate(question, 1)
     ]
 
 

@@ -43,8 +43,8 @@ def test_a_check_that_is_not_rated_says_how_much_it_is_at_least(catalogue: Catal
 
 def test_a_load_that_no_centre_can_carry_fails_with_its_lower_bound(catalogue: Catalogue) -> None:
     """5000 N are above the 1800 N of HPN-20A wherever they act; the reason says that it is a lower bound."""
-    asked = off_centre(5000.0)
-    reply = answer(asked, catalogue)
+    question = off_centre(5000.0)
+    reply = answer(question, catalogue)
     gear, load = candidate(reply, "HPN-20A-5"), check(reply, "HPN-20A-5", "output_bearing_load")
 
     assert gear["status"] == "unsuitable"
@@ -52,7 +52,7 @@ def test_a_load_that_no_centre_can_carry_fails_with_its_lower_bound(catalogue: C
     assert load["utilisation"] == pytest.approx(5000 / 1800, rel=1e-12)
     assert load["at_least"] is None
     assert "or more, wherever the shaft’s centre is" in gear["reason"]
-    typed = select(Application.model_validate(asked), catalogue).candidate("HPN-20A-5")
+    typed = select(Application.model_validate(question), catalogue).candidate("HPN-20A-5")
     assert typed is not None
     assert reason_of(typed, 1.0).template.startswith("{check} is at {percent} of its limit or more")
 

@@ -28,7 +28,7 @@ def phases_of(application: Json) -> tuple[Any, ...]:
 
 
 @pytest.mark.parametrize(
-    ("changes", "place", "said"),
+    ("changes", "place", "message"),
     [
         ({"speed_rpm": 18.75}, ("speed_rpm",), "above 18.75 rpm"),
         ({"acceleration_deg_per_s2": 562}, ("acceleration_deg_per_s2",), "562.5 °/s²"),
@@ -113,17 +113,17 @@ def phases_of(application: Json) -> tuple[Any, ...]:
     ],
 )
 def test_a_move_is_refused_where_it_stands_with_the_bound_that_would_do(
-    changes: Json, place: tuple[str, ...], said: str
+    changes: Json, place: tuple[str, ...], message: str
 ) -> None:
     move = {name: value for name, value in (TURN | changes).items() if value is not None}
     errors = refused(motion(TURN, move))
     where = ("duty_cycle", "motion", "moves", 1, *place)
     assert where in errors
-    assert said in errors[where]
+    assert message in errors[where]
 
 
 @pytest.mark.parametrize(
-    ("mechanism", "place", "said"),
+    ("mechanism", "place", "message"),
     [
         ({"type": "rotary"}, ("inertia_kgm2",), "required"),
         (TABLE | {"gravity_mass_kg": 5}, ("gravity_mass_kg",), "gravity_radius_mm"),
@@ -138,11 +138,11 @@ def test_a_move_is_refused_where_it_stands_with_the_bound_that_would_do(
         (7, (), "dictionary"),
     ],
 )
-def test_a_mechanism_is_refused_where_it_stands(mechanism: Any, place: tuple[str, ...], said: str) -> None:
+def test_a_mechanism_is_refused_where_it_stands(mechanism: Any, place: tuple[str, ...], message: str) -> None:
     errors = refused(motion(TURN, mechanism=mechanism))
     where = ("duty_cycle", "motion", "mechanism", *place)
     assert where in errors
-    assert said in errors[where]
+    assert message in errors[where]
 
 
 @pytest.mark.parametrize(
@@ -211,8 +211,8 @@ def test_a_triangle_that_was_not_asked_for_is_told(catalogue: Catalogue, speed: 
 
 def test_moves_in_a_row_are_told_as_a_range(catalogue: Catalogue) -> None:
     cut = TURN | {"speed_rpm": 50}
-    told = notices(answer(motion(cut, TURN, cut, cut, cut), catalogue))["motion_triangle"]
-    assert "Moves 1, 3–5 " in told
+    notice = notices(answer(motion(cut, TURN, cut, cut, cut), catalogue))["motion_triangle"]
+    assert "Moves 1, 3–5 " in notice
 
 
 @pytest.mark.parametrize("ramps", [(0.2, 0.6), (0.7, 0.1), (0.4, 0.4)])
@@ -241,20 +241,20 @@ def test_a_speed_never_reached_and_an_acceleration_that_just_suffices_give_the_t
         reply = answer(motion(move), catalogue)
         assert "motion_triangle" in notices(reply)
         assert len(reply["duty"]["phases"]) == 2
-    asked = answer(motion({"profile": "triangular", "angle_deg": 90, "time_s": 0.8}), catalogue)
-    assert "motion_triangle" not in notices(asked)
+    question = answer(motion({"profile": "triangular", "angle_deg": 90, "time_s": 0.8}), catalogue)
+    assert "motion_triangle" not in notices(question)
 
 
 @pytest.mark.parametrize(
-    ("angles", "gravity", "told"),
+    ("angles", "gravity", "has_notice"),
     [((90, -90), 5, False), ((200, 160), 5, False), ((90,), 5, True), ((90,), None, False)],
 )
 def test_a_motion_that_ends_where_gravity_pulls_otherwise_is_told(
-    catalogue: Catalogue, angles: tuple[float, ...], gravity: float | None, told: bool
+    catalogue: Catalogue, angles: tuple[float, ...], gravity: float | None, has_notice: bool
 ) -> None:
     mechanism = TABLE | ({"gravity_mass_kg": gravity, "gravity_radius_mm": 100.0} if gravity else {})
     reply = answer(motion(*(TURN | {"angle_deg": angle} for angle in angles), mechanism=mechanism), catalogue)
-    assert ("motion_left_off" in notices(reply)) is told
+    assert ("motion_left_off" in notices(reply)) is has_notice
 
 
 def test_a_move_carries_its_loads_and_the_cycle_fills_what_it_leaves(catalogue: Catalogue) -> None:
@@ -311,23 +311,23 @@ def test_a_ramp_that_friction_alone_brakes_takes_no_torque() -> None:
 def test_an_inertia_below_that_of_the_gravity_mass_is_refused_with_the_bound() -> None:
     heavy = TABLE | {"gravity_mass_kg": 12.0, "gravity_radius_mm": 250.0}
 
-    ((place, said),) = refused(motion(TURN, mechanism=heavy | {"inertia_kgm2": 0.7})).items()
+    ((place, message),) = refused(motion(TURN, mechanism=heavy | {"inertia_kgm2": 0.7})).items()
 
     assert place == ("duty_cycle", "motion", "mechanism", "inertia_kgm2")
-    assert "at least 0.75 kg" in said
+    assert "at least 0.75 kg" in message
     assert phases_of(motion(TURN, mechanism=heavy | {"inertia_kgm2": 0.75}))
 
 
 @pytest.mark.parametrize("profile", ["trapezoidal", "s_curve"])
-@pytest.mark.parametrize("given", [*combinations(("time_s", "speed_rpm", "acceleration_deg_per_s2"), 2)])
-def test_figures_that_follow_give_the_same_move_when_they_are_typed(profile: Any, given: tuple[str, str]) -> None:
+@pytest.mark.parametrize("inputs", [*combinations(("time_s", "speed_rpm", "acceleration_deg_per_s2"), 2)])
+def test_figures_that_follow_give_the_same_move_when_they_are_typed(profile: Any, inputs: tuple[str, str]) -> None:
     """A third of 0.4 s for each ramp: 110 deg at 412.5 deg/s (area of the trapezoid), reached in 0.4 / 3 s."""
     typed = {"time_s": 0.4, "speed_rpm": 68.75, "acceleration_deg_per_s2": 412.5 * 3 / 0.4}
     if profile == "s_curve":
         typed["acceleration_deg_per_s2"] /= 0.75
-    move = Turn(profile=profile, angle_deg=110, **{name: typed[name] for name in given})
+    move = Turn(profile=profile, angle_deg=110, **{name: typed[name] for name in inputs})
     followed = move.followed
-    for name in typed.keys() - {*given}:
+    for name in typed.keys() - {*inputs}:
         assert followed[name] == pytest.approx(typed[name], rel=1e-12)
     assert followed["acceleration_time_s"] == followed["deceleration_time_s"] == pytest.approx(0.4 / 3, rel=1e-9)
     assert "time_s" not in Turn(profile="trapezoidal", angle_deg=110, time_s=0.4).followed
@@ -358,20 +358,20 @@ def test_a_jerk_at_its_bound_fills_the_ramps_and_a_great_one_leaves_them_straigh
 
 
 @pytest.mark.parametrize(
-    ("incline_deg", "coefficient", "told"), [(90, 0.1, True), (-90, 0.1, True), (90, 0, False), (89, 0.1, False)]
+    ("incline_deg", "coefficient", "has_notice"), [(90, 0.1, True), (-90, 0.1, True), (90, 0, False), (89, 0.1, False)]
 )
 def test_a_coefficient_of_friction_that_has_no_effect_is_told(
-    catalogue: Catalogue, incline_deg: float, coefficient: float, told: bool
+    catalogue: Catalogue, incline_deg: float, coefficient: float, has_notice: bool
 ) -> None:
     stroke = {"profile": "modified_sine", "distance_mm": 10, "time_s": 1}
     guided = SCREW | {"incline_deg": incline_deg, "friction_coefficient": coefficient}
-    assert ("friction_without_effect" in notices(answer(motion(stroke, mechanism=guided), catalogue))) is told
+    assert ("friction_without_effect" in notices(answer(motion(stroke, mechanism=guided), catalogue))) is has_notice
 
 
 def test_a_weight_and_its_counterweight_leave_no_rounding_error() -> None:
-    held = SCREW | {"incline_deg": 30.0, "counterweight_kg": 50.0}
+    value_held = SCREW | {"incline_deg": 30.0, "counterweight_kg": 50.0}
     stroke = {"profile": "trapezoidal", "distance_mm": 100.0, "time_s": 0.5}
 
-    _, run, _ = phases_of(motion(stroke, mechanism=held))
+    _, run, _ = phases_of(motion(stroke, mechanism=value_held))
 
     assert (str(run.torque_Nm), run.peak_torque_Nm) == ("0.0", 0.0)

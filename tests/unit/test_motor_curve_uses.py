@@ -57,21 +57,21 @@ def test_a_pair_with_a_curve_is_judged_as_the_selection_that_takes_it(
     catalogue = supplemented(**own) if own else CATALOGUE
     some = [entry(random.Random(number), number, 4000) for number in range(5)]
     some.append(MotorEntry(designation="rated", rated_torque_Nm=9.0, peak_torque_Nm=27.0, inertia_kgm2=1e-3))
-    asked = Pairing.model_validate({"application": application, "motors": some}).application
-    table: PairTable = table_of(asked, some, catalogue)
+    question = Pairing.model_validate({"application": application, "motors": some}).application
+    table: PairTable = table_of(question, some, catalogue)
 
     for row, motor in enumerate(some):
-        taken = with_figures(asked, motor)
+        taken = with_figures(question, motor)
         assert taken.requirements.motor is not None
         assert (taken.requirements.motor.curve, taken.requirements.motor.name) == (motor.curve, motor.designation)
         reply = select(taken, catalogue)
         for column, gear in enumerate(table.gears.rows):
-            found = reply.candidate(gear.designation)
-            assert found is not None
-            thermal = found.check("motor_rated_torque")
+            result = reply.candidate(gear.designation)
+            assert result is not None
+            thermal = result.check("motor_rated_torque")
             assert thermal is not None
             for figure, expected in (
-                (table.utilisation[row, column], found.utilisation),
+                (table.utilisation[row, column], result.utilisation),
                 (table.thermal[row, column], thermal.utilisation),
             ):
                 expected = math.nan if expected is None else expected
@@ -81,8 +81,8 @@ def test_a_pair_with_a_curve_is_judged_as_the_selection_that_takes_it(
 def test_a_pair_that_is_taken_keeps_its_curve_in_the_link_and_opens_as_it_was_judged() -> None:
     api = TestClient(create_app(Settings()))
     motor = {"designation": "S60", "inertia_kgm2": 1e-4, "weight_kg": 2.1, "stall_torque_Nm": 2.8, "curve": POINTS}
-    asked = {"application": {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}}, "motors": [motor], "top": 1}
-    [pair] = api.post("/api/v1/pairs", json=asked).raise_for_status().json()["pairs"]
+    document = {"application": {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}}, "motors": [motor], "top": 1}
+    [pair] = api.post("/api/v1/pairs", json=document).raise_for_status().json()["pairs"]
 
     form = parse(query(pair["link"].removeprefix("/?")))
     assert form.application is not None
@@ -100,9 +100,9 @@ def test_a_pair_whose_link_would_be_too_long_has_none() -> None:
         for k in range(50)
     ]
     long = [phase(5 + k / 7, 50 + k / 3, 0.3) for k in range(150)]
-    asked = {"application": cycle(*long), "motors": [{"designation": "S60", "curve": points}], "top": 1}
+    document = {"application": cycle(*long), "motors": [{"designation": "S60", "curve": points}], "top": 1}
     api = TestClient(create_app(Settings()))
-    [pair] = api.post("/api/v1/pairs", json=asked).raise_for_status().json()["pairs"]
+    [pair] = api.post("/api/v1/pairs", json=document).raise_for_status().json()["pairs"]
 
     assert pair["link"] is None
 
@@ -111,26 +111,28 @@ def test_no_ratio_can_save_a_motor_by_its_torque_at_standstill(catalogue: Catalo
     """M₀ counts along a curve: no RMS above it passes at any speed."""
     weak = {"designation": "weak", "inertia_kgm2": 1.0, "curve": POINTS}
     strong = {"designation": "strong", "inertia_kgm2": 1e-5, "curve": POINTS, "stall_torque_Nm": 2.8}
-    asked = {"application": {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}}, "motors": [weak, strong]}
-    wanted = Pairing.model_validate(asked)
-    found = pairs_of(wanted, wanted.motors or (), catalogue, lambda equipped, gear: None)
+    document = {"application": {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}}, "motors": [weak, strong]}
+    expected = Pairing.model_validate(document)
+    result = pairs_of(expected, expected.motors or (), catalogue, lambda equipped, gear: None)
 
-    named = next(notice for notice in found.notices if notice.code == "no_ratio_for_motor")
+    named = next(notice for notice in result.notices if notice.code == "no_ratio_for_motor")
     assert named.values["names"] == "weak"
-    assert not any(notice.code == "motor_figures_unknown" for notice in found.notices)
+    assert not any(notice.code == "motor_figures_unknown" for notice in result.notices)
 
 
-@pytest.mark.parametrize(("inertia", "moves", "said"), [(None, True, True), (2e-4, True, False), (2e-4, False, True)])
+@pytest.mark.parametrize(
+    ("inertia", "moves", "has_message"), [(None, True, True), (2e-4, True, False), (2e-4, False, True)]
+)
 def test_pairs_say_that_a_rotor_is_left_out_where_one_motor_is_judged_by_phases(
-    catalogue: Catalogue, inertia: float | None, moves: bool, said: bool
+    catalogue: Catalogue, inertia: float | None, moves: bool, has_message: bool
 ) -> None:
     first = {"designation": "A", "inertia_kgm2": 1e-4, "peak_torque_Nm": 9.0}
     second = {"designation": "B", "inertia_kgm2": inertia, "curve": POINTS}
     application = {"duty_cycle": {"motion": TURNING}} if moves else cycle(phase(5, 100))
-    wanted = Pairing.model_validate({"application": application, "motors": [first, second]})
-    found = pairs_of(wanted, wanted.motors or (), catalogue, lambda equipped, gear: None)
+    expected = Pairing.model_validate({"application": application, "motors": [first, second]})
+    result = pairs_of(expected, expected.motors or (), catalogue, lambda equipped, gear: None)
 
-    assert [one.code for one in found.notices].count("rotor_not_included") == said
+    assert [one.code for one in result.notices].count("rotor_not_included") == has_message
 
 
 # --- Lists ------------------------------------------------------------------------------------------------------------
@@ -141,8 +143,8 @@ def listed(text: str, **answers: str) -> tuple[list[MotorEntry], list[str], list
     table = reading_of(text, BOUNDS, Choices(of=ANY, **answers)).table  # type: ignore[arg-type]
     assert table is not None
     assert not table.questions
-    found, said = motors_in(table)
-    return found, [one.text for one in said], [note.text for note in table.notes]
+    result, message = motors_in(table)
+    return result, [one.text for one in message], [note.text for note in table.notes]
 
 
 ROWS = """Motor\tM0 [Nm]\tJ [kg·cm²]\tm [kg]\tcurve speed [rpm]\tM S1 [Nm]\tcurve peak torque [Nm]
@@ -154,9 +156,9 @@ S80\t5\t2\t3\t\t\t
 
 
 def test_rows_of_a_motor_are_the_points_of_its_curve() -> None:
-    found, said, notes = listed(ROWS)
+    result, message, notes = listed(ROWS)
 
-    assert [motor.model_dump(exclude_none=True) for motor in found] == [
+    assert [motor.model_dump(exclude_none=True) for motor in result] == [
         {
             "designation": "S60",
             "stall_torque_Nm": 2.8,
@@ -171,7 +173,7 @@ def test_rows_of_a_motor_are_the_points_of_its_curve() -> None:
             "weight_kg": 3.0,
         },
     ]
-    assert (said, notes) == ([], [])
+    assert (message, notes) == ([], [])
 
 
 COLUMNS = """Motor;M0 [Nm];S1 0 rpm [Nm];S1 3000 rpm;S1 6000 rpm;peak 0 rpm [Nm];peak 3000 rpm;peak 6000 rpm
@@ -182,15 +184,15 @@ S90;5;4;;3;9;;8
 
 
 def test_columns_of_the_torques_at_one_speed_are_the_points_of_a_curve() -> None:
-    found, said, notes = listed(COLUMNS)
+    result, message, notes = listed(COLUMNS)
 
-    assert [(motor.designation, motor.stall_torque_Nm) for motor in found] == [("S60", 2.8), ("S80", 5), ("S90", 5)]
-    assert [[point.model_dump() for point in motor.curve or ()] for motor in found] == [
+    assert [(motor.designation, motor.stall_torque_Nm) for motor in result] == [("S60", 2.8), ("S80", 5), ("S90", 5)]
+    assert [[point.model_dump() for point in motor.curve or ()] for motor in result] == [
         POINTS,
         [],
         [{"speed_rpm": 0, "continuous_Nm": 4, "peak_Nm": 9}, {"speed_rpm": 6000, "continuous_Nm": 3, "peak_Nm": 8}],
     ]
-    assert (said, notes) == ([], [])
+    assert (message, notes) == ([], [])
 
 
 def test_points_of_one_name_beside_other_figures_are_not_one_motor() -> None:
@@ -216,12 +218,12 @@ HEAD = "Motor;continuous {0} 0 rpm {1};peak {0} 0 rpm {1};continuous {0} 3000 rp
     ],
 )
 def test_torques_at_one_speed_are_in_the_unit_of_their_headings(heads: str) -> None:
-    ((motor,), said, notes) = listed(heads + "S60;280;720;150;300\n")
+    ((motor,), message, notes) = listed(heads + "S60;280;720;150;300\n")
     assert [[*point.model_dump().values()] for point in motor.curve or ()] == [
         pytest.approx([0, 2.8, 7.2], rel=1e-12),
         pytest.approx([3000, 1.5, 3], rel=1e-12),
     ]
-    assert (said, notes) == ([], [])
+    assert (message, notes) == ([], [])
 
 
 @pytest.mark.parametrize(
@@ -244,9 +246,9 @@ def test_torques_at_one_speed_of_which_unit_or_factor_is_open_are_never_points(t
 
 
 def test_a_list_with_curves_is_edited_as_the_table_that_it_is_written_as() -> None:
-    found, _, _ = listed(ROWS)
+    result, _, _ = listed(ROWS)
 
-    assert listed(as_text(found)) == (found, [], [])
+    assert listed(as_text(result)) == (result, [], [])
 
 
 PARTS = ROWS + "S90\t5\t2\t3\t0\t4\t9\nS90\t\t\t\t3000\t4\t\nS95\t5\t2\t3\t9\t4\t9\n\t\t\t\t99\t4\t9\n"
@@ -258,10 +260,10 @@ def test_a_part_of_a_point_is_asked_about_at_its_row_and_column() -> None:
     assert [one.text for one in table.questions] == [
         "Incomplete points of a torque curve, first in row 7: “curve peak torque [Nm]” is missing. What counts?"
     ]
-    found, said, notes = listed(PARTS, points="motors")
-    assert [motor.designation for motor in found] == ["S60", "S80"]
+    result, message, notes = listed(PARTS, points="motors")
+    assert [motor.designation for motor in result] == ["S60", "S80"]
     assert notes == ["Motors with a part of a point of a torque curve are left out (1): row 7."]
-    assert len(said) == 1  # S95
+    assert len(message) == 1  # S95
 
 
 @pytest.mark.parametrize(
@@ -274,14 +276,14 @@ def test_a_part_of_a_point_is_asked_about_at_its_row_and_column() -> None:
 )
 def test_a_motor_without_any_figure_is_left_out_with_a_note(rows: str, figures: list[str]) -> None:
     text = "Motor;curve speed [rpm];M S1 [Nm];curve peak torque [Nm]\n" + rows
-    found, _, notes = listed(text, points="skip", zeros="unknown")
-    assert [motor.designation for motor in found] == figures
+    result, _, notes = listed(text, points="skip", zeros="unknown")
+    assert [motor.designation for motor in result] == figures
     assert notes[-1].startswith("Motors without any figure are left out (1): row ")
 
 
 def test_a_rated_power_without_its_speed_is_no_figure_of_a_motor() -> None:
-    found, _, notes = listed("Motor;P_N [kW];n_N [rpm]\nA;1;3000\nB;2;\n", blanks="unknown")
-    assert [motor.designation for motor in found] == ["A"]
+    result, _, notes = listed("Motor;P_N [kW];n_N [rpm]\nA;1;3000\nB;2;\n", blanks="unknown")
+    assert [motor.designation for motor in result] == ["A"]
     assert notes[-1] == "Motors without any figure are left out (1): row 3."
 
 
@@ -290,17 +292,17 @@ def test_a_point_that_can_not_be_read_leaves_its_whole_motor_out(cell: str) -> N
     """A straight line past it could be above the curve that is meant."""
     text = "Motor;curve speed [rpm];M S1 [Nm];curve peak torque [Nm]\n"
     text += f"S60;0;2;6\nS60;3000;{cell};5\nS60;6000;1;5\nS80;0;1;2\nS80;500;1;2\n"
-    found, _, notes = listed(text, zeros="skip")
-    assert [motor.designation for motor in found] == ["S80"]
+    result, _, notes = listed(text, zeros="skip")
+    assert [motor.designation for motor in result] == ["S80"]
     assert [note.endswith("(1): row 3.") for note in notes] == [True]
 
 
 def test_a_part_of_a_point_is_left_out_and_a_curve_that_can_not_be_leaves_its_motor_out() -> None:
-    found, said, notes = listed(PARTS, points="skip")
+    result, message, notes = listed(PARTS, points="skip")
 
-    assert [motor.designation for motor in found] == ["S60", "S80"]
+    assert [motor.designation for motor in result] == ["S60", "S80"]
     assert next(note for note in notes if "part of a point" in note).endswith("(1): row 7.")
-    assert said == [
+    assert message == [
         "Row 6, S90, is left out: curve must have at least 2 items, not 1.",
         "Row 8, S95, is left out: curve must be 0 in the first point.",
     ]
@@ -309,13 +311,15 @@ def test_a_part_of_a_point_is_left_out_and_a_curve_that_can_not_be_leaves_its_mo
 def test_a_kept_list_gives_its_curves_to_pairs(tmp_path: Path) -> None:
     with TestClient(create_app(Settings(database_url=f"sqlite:///{tmp_path}/s.sqlite3"))) as api:
         sent = {"name": "Ours", "motors": [{"designation": "S60", "inertia_kgm2": 1e-4, "curve": POINTS}]}
-        kept = api.post("/api/v1/motor-lists", json=sent)
-        assert kept.status_code == 201
-        read = api.get(kept.headers["Location"]).json()
+        response = api.post("/api/v1/motor-lists", json=sent)
+        assert response.status_code == 201
+        read = api.get(response.headers["Location"]).json()
         assert read["motors"][0]["curve"] == POINTS
-        asked = {"application": {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}}, "top": 1}
-        by_list = api.post("/api/v1/pairs", json=asked | {"list": kept.json()["id"]}).raise_for_status().json()
-        assert by_list == api.post("/api/v1/pairs", json=asked | {"motors": sent["motors"]}).raise_for_status().json()
+        document = {"application": {"duty_cycle": {"motion": TURNING, "pause_s": 0.5}}, "top": 1}
+        by_list = api.post("/api/v1/pairs", json=document | {"list": response.json()["id"]}).raise_for_status().json()
+        assert (
+            by_list == api.post("/api/v1/pairs", json=document | {"motors": sent["motors"]}).raise_for_status().json()
+        )
 
 
 # --- Fleets -----------------------------------------------------------------------------------------------------------
@@ -331,8 +335,8 @@ def test_the_curve_of_an_axis_of_a_fleet_is_json_in_its_cell(tmp_path: Path, cat
     with (tmp_path / "answers.csv").open() as file:
         answers = list(csv.DictReader(file))
 
-    asked = cycle(phase(40, 100, 1), requirements={"motor": {"curve": POINTS, "name": "S60"}})
-    reply = select(Application.model_validate(asked), catalogue)
+    question = cycle(phase(40, 100, 1), requirements={"motor": {"curve": POINTS, "name": "S60"}})
+    reply = select(Application.model_validate(question), catalogue)
     assert answers[0]["selected"] == reply.selected
     assert float(answers[0]["utilisation"]) == pytest.approx(reply.candidates[0].utilisation, rel=1e-12)
     assert answers[1]["error"] == ""
@@ -416,15 +420,15 @@ def test_the_gear_list_of_a_machine_names_the_motors_of_its_axes(tmp_path: Path)
                 ("A", {}),
             )
         ]
-        kept = api.post("/api/v1/machines", json={"title": "Line", "axes": axes})
-        assert kept.status_code == 201, kept.text
-        gears = api.get(f"/api/v1/machines/{kept.json()['id']}/gears").json()["gears"]
+        response = api.post("/api/v1/machines", json={"title": "Line", "axes": axes})
+        assert response.status_code == 201, response.text
+        gears = api.get(f"/api/v1/machines/{response.json()['id']}/gears").json()["gears"]
         assert sorted(name for gear in gears for name in gear["motors"]) == ["S60", "S80"]
-        page = api.get(kept.json()["url"]).text
+        page = api.get(response.json()["url"]).text
         assert "S60" in page
-        book = load_workbook(BytesIO(api.get(f"/api/v1/machines/{kept.json()['id']}/gears.xlsx").content))
+        book = load_workbook(BytesIO(api.get(f"/api/v1/machines/{response.json()['id']}/gears.xlsx").content))
         assert {row[7] for row in book.worksheets[0].iter_rows(values_only=True) if len(row) > 7} >= {"S60", "S80"}
-        report = api.get(f"/api/v1/machines/{kept.json()['id']}/report.pdf").content
+        report = api.get(f"/api/v1/machines/{response.json()['id']}/report.pdf").content
         assert "S60" in page_texts(report, 1)[0] and "S80" in page_texts(report, 1)[0]
 
 

@@ -54,8 +54,8 @@ def test_a_figure_that_is_blank_in_the_list_is_not_checked(supplemented: Supplem
 def test_a_motor_that_is_not_listed_is_refused_by_name_with_those_there_are(
     supplemented: Supplement, catalogue: Catalogue
 ) -> None:
-    for book, said in ((supplemented(motors=MOTORS), "M 40, M 60"), (catalogue, r"motors\.csv")):
-        with pytest.raises(InputError, match=said) as refusal:
+    for book, message in ((supplemented(motors=MOTORS), "M 40, M 60"), (catalogue, r"motors\.csv")):
+        with pytest.raises(InputError, match=message) as refusal:
             answer(asking({"designation": "M 41"}), book)
         assert [place for place, _ in refusal.value.problems] == [("requirements", "motor", "designation")]
 
@@ -65,8 +65,8 @@ def test_of_the_motors_there_are_twenty_are_named(supplemented: Supplement, coun
     book = supplemented(motors=HEADER + "".join(f"M {k},6000,,,,,\n" for k in range(count)))
     with pytest.raises(InputError) as refusal:
         answer(asking({"designation": "M 41"}), book)
-    ((_, said),) = refusal.value.problems
-    assert str(said).endswith(f", {last}")
+    ((_, message),) = refusal.value.problems
+    assert str(message).endswith(f", {last}")
 
 
 def test_a_motor_without_inertia_has_no_inertia_ratio(supplemented: Supplement) -> None:
@@ -92,7 +92,7 @@ def test_a_name_beside_figures_is_refused(name: str, value: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("motor", "more", "place", "said"),
+    ("motor", "more", "place", "message"),
     [
         ({"inertia_ratio": 5}, {"load_inertia_kgm2": 1}, ("motor", "inertia_ratio"), "inertia_kgm2"),
         ({"inertia_ratio": 5, "inertia_kgm2": 1e-4}, {}, ("motor", "inertia_ratio"), "load_inertia_kgm2"),
@@ -100,10 +100,10 @@ def test_a_name_beside_figures_is_refused(name: str, value: float) -> None:
         ({}, {"load_inertia_kgm2": 0}, ("load_inertia_kgm2",), "greater than 0"),
     ],
 )
-def test_an_inertia_ratio_needs_both_inertias(motor: Json, more: Json, place: tuple[str, ...], said: str) -> None:
+def test_an_inertia_ratio_needs_both_inertias(motor: Json, more: Json, place: tuple[str, ...], message: str) -> None:
     errors = refused(asking(motor, **more))
     assert list(errors) == [("requirements", *place)]
-    assert said in errors["requirements", *place]
+    assert message in errors["requirements", *place]
 
 
 def test_a_motion_has_its_own_inertia_of_the_load() -> None:
@@ -117,7 +117,7 @@ def test_a_motion_has_its_own_inertia_of_the_load() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rows", "said"),
+    ("rows", "message"),
     [
         ("M 40,6000,6001,2.4,7.2,0.1,\n", "rated_speed_rpm"),
         ("M 40,6000,3000,7.3,7.2,0.1,\n", "rated_torque_Nm"),
@@ -126,8 +126,8 @@ def test_a_motion_has_its_own_inertia_of_the_load() -> None:
         ("M 40,1,1,1,1,1,\nM 40,2,2,2,2,2,\n", "line 3"),
     ],
 )
-def test_a_wrong_list_of_motors_is_refused_by_its_cell(supplemented: Supplement, rows: str, said: str) -> None:
-    with pytest.raises(CatalogueError, match=f"motors.csv.*{said}"):
+def test_a_wrong_list_of_motors_is_refused_by_its_cell(supplemented: Supplement, rows: str, message: str) -> None:
+    with pytest.raises(CatalogueError, match=f"motors.csv.*{message}"):
         supplemented(motors=HEADER + rows)
 
 
@@ -154,14 +154,14 @@ def test_the_motors_are_told_with_their_source(tmp_path: Path) -> None:
 
 def test_the_use_of_each_motor_on_a_gear_is_that_of_a_selection_with_it(tmp_path: Path) -> None:
     (tmp_path / "motors.csv").write_text(MOTORS)
-    asked = worked_example(requirements={"sizes": ["20A"], "ratios": [5]})
+    application = worked_example(requirements={"sizes": ["20A"], "ratios": [5]})
     with TestClient(create_app(Settings(catalogue_supplement=tmp_path))) as client:
-        reply = client.post("/api/v1/motors/hpn-20a-05", json=asked).json()
+        reply = client.post("/api/v1/motors/hpn-20a-05", json=application).json()
         assert reply["designation"] == "HPN-20A-5"
         assert [use["motor"]["designation"] for use in reply["motors"]]
         for use in reply["motors"]:
-            asked["requirements"]["motor"] = {"designation": use["motor"]["designation"]}
-            [gear] = client.post("/api/v1/select", json=asked).json()["candidates"]
+            application["requirements"]["motor"] = {"designation": use["motor"]["designation"]}
+            [gear] = client.post("/api/v1/select", json=application).json()["candidates"]
             checks = {check["code"]: check for check in gear["checks"] if check["code"] in use["utilisations"]}
             assert {code: check["utilisation"] for code, check in checks.items()} == use["utilisations"]
             assert use["fits"] == all(check["status"] == "pass" for check in checks.values())
@@ -169,19 +169,19 @@ def test_the_use_of_each_motor_on_a_gear_is_that_of_a_selection_with_it(tmp_path
 
 
 @pytest.mark.parametrize(
-    ("path", "body", "status", "said"),
+    ("path", "body", "status", "message"),
     [
         ("HPN-99A-5", "{}", 404, "no gear 'HPN-99A-5'"),
         ("HPN-20A-5", "{", 400, "JSON"),
         ("HPN-20A-5", "{}", 422, "duty_cycle"),
     ],
 )
-def test_a_question_that_cannot_be_answered_says_why(path: str, body: str, status: int, said: str) -> None:
+def test_a_question_that_cannot_be_answered_says_why(path: str, body: str, status: int, message: str) -> None:
     with TestClient(create_app(Settings())) as client:
         kind = {"Content-Type": "application/json"}
         reply = client.post(f"/api/v1/motors/{path}", content=body, headers=kind)
         assert (reply.status_code, reply.headers["Content-Type"]) == (status, "application/problem+json")
-        assert said in reply.text
+        assert message in reply.text
         fine = client.post("/api/v1/motors/HPN-20A-5", json=worked_example())
         assert (fine.status_code, fine.json()["motors"]) == (200, [])
 

@@ -26,19 +26,19 @@ def test_the_distance_is_where_the_lever_brings_the_load_to_its_limit(catalogue:
 
     The limits are those of tables 10.1 to 12.2. Sixty halvings leave less than 1e-9 of the distance.
     """
-    found = needed(loaded(), catalogue)
+    result = needed(loaded(), catalogue)
 
-    assert found["11A"] == pytest.approx(400 * 45 / 480, rel=1e-9)
-    assert found["14A"] == pytest.approx(400 * 45 / 840, rel=1e-9)
-    assert found["20A"] == pytest.approx(400 * 45 / 1800, rel=1e-9)
+    assert result["11A"] == pytest.approx(400 * 45 / 480, rel=1e-9)
+    assert result["14A"] == pytest.approx(400 * 45 / 840, rel=1e-9)
+    assert result["20A"] == pytest.approx(400 * 45 / 1800, rel=1e-9)
 
 
 def test_the_largest_load_of_a_phase_needs_the_distance_where_the_mean_is_small(catalogue: Catalogue) -> None:
     """By hand: a load of 400 N in one phase of a thousandth of the time, whose share of the mean is 0.1 at most."""
     phases = phase(10, 100, 0.01, radial_N=400.0), phase(10, 100, 9.99, radial_N=1.0)
-    found = needed(cycle(*phases, output_load={"radial_position_mm": 45.0}), catalogue)
+    result = needed(cycle(*phases, output_load={"radial_position_mm": 45.0}), catalogue)
 
-    assert found["11A"] == pytest.approx(400 * 45 / 480, rel=1e-9)
+    assert result["11A"] == pytest.approx(400 * 45 / 480, rel=1e-9)
 
 
 def test_a_size_that_fails_without_a_lever_needs_a_distance_that_there_is_not(catalogue: Catalogue) -> None:

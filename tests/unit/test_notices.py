@@ -23,17 +23,17 @@ def test_a_plain_application_on_rated_gears_needs_a_notice_on_the_efficiency_alo
     assert codes(PLAIN, catalogue) == {"limit_without_efficiency"}
 
 
-@pytest.mark.parametrize(("ramp_s", "told"), [(0.034, True), (0.036, False)])
+@pytest.mark.parametrize(("ramp_s", "has_notice"), [(0.034, True), (0.036, False)])
 def test_a_ramp_shorter_than_a_period_of_the_load_is_told_with_both(
-    ramp_s: float, told: bool, catalogue: Catalogue
+    ramp_s: float, has_notice: bool, catalogue: Catalogue
 ) -> None:
     """f_1 = √(26000 / 0.8) / 2π = 28.692 Hz, and its period 34.85 ms."""
     move = {"profile": "trapezoidal", "angle_deg": 9.0, "time_s": 1.0, "acceleration_time_s": ramp_s}
     motion = {"mechanism": {"type": "rotary", "inertia_kgm2": 0.8}, "moves": [move]}
-    found = notices(answer({"duty_cycle": {"motion": motion}, "requirements": {"sizes": ["20A"]}}, catalogue))
-    assert ("ramp_shorter_than_period" in found) is told
-    if told:
-        assert found["ramp_shorter_than_period"].startswith(
+    result = notices(answer({"duty_cycle": {"motion": motion}, "requirements": {"sizes": ["20A"]}}, catalogue))
+    assert ("ramp_shorter_than_period" in result) is has_notice
+    if has_notice:
+        assert result["ramp_shorter_than_period"].startswith(
             "A ramp of 0.034 s is shorter than a period of 0.0348528 s of the load’s natural frequency on HPN-20A-"
         )
 
@@ -77,9 +77,9 @@ def test_there_are_the_nine_areas_of_section_2_4() -> None:
 def test_an_emergency_stop_below_the_largest_torque_is_questioned(
     catalogue: Catalogue, T_k: float, below: bool
 ) -> None:
-    found = codes(PLAIN | {"emergency_stop": {"torque_Nm": T_k}}, catalogue)
+    result = codes(PLAIN | {"emergency_stop": {"torque_Nm": T_k}}, catalogue)
 
-    assert ("emergency_stop_below_maximum" in found) == below
+    assert ("emergency_stop_below_maximum" in result) == below
 
 
 def test_an_unlimited_count_is_null_beside_its_notice_and_a_limited_one_is_given(catalogue: Catalogue) -> None:
@@ -120,12 +120,12 @@ def test_a_cycle_without_torque_has_an_unlimited_life_beside_its_notice(catalogu
 def test_bearing_loads_bring_the_standing_of_the_envelope_and_of_its_life(catalogue: Catalogue) -> None:
     reply = answer(PLAIN | {"output_load": {"radial_N": 100}}, catalogue)
 
-    found = notices(reply)
-    assert "interpolated between the two published limits" in found["bearing_envelope_computed"]
-    assert "printed curve not available" in found["bearing_envelope_computed"]
-    assert "centre" in found["bearing_load_position"]
-    assert "L50 / 5" in found["bearing_life_basis"]
-    assert "5.45" in found["bearing_life_basis"]
+    result = notices(reply)
+    assert "interpolated between the two published limits" in result["bearing_envelope_computed"]
+    assert "printed curve not available" in result["bearing_envelope_computed"]
+    assert "centre" in result["bearing_load_position"]
+    assert "L50 / 5" in result["bearing_life_basis"]
+    assert "5.45" in result["bearing_life_basis"]
     assert not {code for code in codes(PLAIN, catalogue) if code.startswith("bearing")}
 
 
@@ -153,12 +153,12 @@ def on_end(*seconds: float, pause_s: float = 0.0, ratio: int = 10, bound_s: floa
     """Notice on a cycle of 3500 and 500 rpm at the input in turn, which averages below 3000 rpm."""
     fast, slow = 3500 / ratio, 500 / ratio
     phases = [phase(1, fast if place % 2 == 0 else slow, t) for place, t in enumerate(seconds)]
-    asked = cycle(*phases, pause_s=pause_s, requirements={"sizes": ["20A"], "ratios": [ratio]})
-    return notices(answer(asked, load_catalogue(averaging_s=bound_s))).get("speed_above_average")
+    question = cycle(*phases, pause_s=pause_s, requirements={"sizes": ["20A"], "ratios": [ratio]})
+    return notices(answer(question, load_catalogue(averaging_s=bound_s))).get("speed_above_average")
 
 
 @pytest.mark.parametrize(
-    ("seconds", "pause_s", "told"),
+    ("seconds", "pause_s", "has_notice"),
     [
         ((300.0, 300.0), 0.0, False),
         ((300.1, 300.0), 0.0, True),
@@ -168,9 +168,9 @@ def on_end(*seconds: float, pause_s: float = 0.0, ratio: int = 10, bound_s: floa
     ],
 )
 def test_running_on_end_above_the_average_speed_is_told_beyond_the_bound(
-    seconds: tuple[float, ...], pause_s: float, told: bool
+    seconds: tuple[float, ...], pause_s: float, has_notice: bool
 ) -> None:
-    assert bool(on_end(*seconds, pause_s=pause_s)) == told
+    assert bool(on_end(*seconds, pause_s=pause_s)) == has_notice
 
 
 def test_the_notice_on_long_runs_says_how_long_and_that_the_bound_is_ours() -> None:
@@ -180,16 +180,18 @@ def test_the_notice_on_long_runs_says_how_long_and_that_the_bound_is_ours() -> N
 
 
 def test_splitting_a_long_phase_changes_nothing_about_it() -> None:
-    asked = cycle(
+    question = cycle(
         phase(1, 350, 200), phase(1, 350, 200), phase(1, 50, 400), requirements={"sizes": ["20A"], "ratios": [10]}
     )
-    assert "for 400 s without a break" in notices(answer(asked, load_catalogue()))["speed_above_average"]
+    assert "for 400 s without a break" in notices(answer(question, load_catalogue()))["speed_above_average"]
 
 
 def test_a_cycle_beside_longer_ones_has_the_same_notice_on_long_runs() -> None:
-    asked = {"sizes": ["20A"], "ratios": [10]}
+    document = {"sizes": ["20A"], "ratios": [10]}
     phases = [phase(1, 350, 200), phase(1, 50, 600), phase(1, 350, 200)]
-    short, long = (Application.model_validate(cycle(*one, requirements=asked)) for one in (phases, [*phases, *phases]))
+    short, long = (
+        Application.model_validate(cycle(*one, requirements=document)) for one in (phases, [*phases, *phases])
+    )
     catalogue = load_catalogue()
     selection = judge_batch([short, long], catalogue, Judgement.selection)[0]
 
@@ -208,7 +210,7 @@ def test_models_and_motor_torques_say_what_they_leave_out(catalogue: Catalogue) 
 
 
 @pytest.mark.parametrize(
-    ("load", "told"),
+    ("load", "has_notice"),
     [
         ({"radial_N": 1500}, True),
         ({"radial_N": 1500, "life_h": 40000}, False),
@@ -217,7 +219,7 @@ def test_models_and_motor_torques_say_what_they_leave_out(catalogue: Catalogue) 
     ],
 )
 def test_a_life_asked_of_the_gear_alone_says_for_which_life_its_bearing_is_judged(
-    catalogue: Catalogue, load: Json | None, told: bool
+    catalogue: Catalogue, load: Json | None, has_notice: bool
 ) -> None:
     """HPN-20A-5 lasts 40000 h as asked, and its bearing 34600 h as L50, which is more than the default of 20000 h."""
     parts = {"output_load": load} if load else {}
@@ -225,16 +227,18 @@ def test_a_life_asked_of_the_gear_alone_says_for_which_life_its_bearing_is_judge
 
     text = notices(answer(long, catalogue)).get("bearing_life_at_default", "")
 
-    assert ("40000 h (L10)" in text, "20000 h (L50)" in text) == (told, told)
+    assert ("40000 h (L10)" in text, "20000 h (L50)" in text) == (has_notice, has_notice)
 
 
-@pytest.mark.parametrize(("stop", "told"), [({"torque_Nm": 200}, True), ({"torque_Nm": 200, "count": 9}, False)])
-def test_stops_without_their_number_say_that_it_is_not_judged(catalogue: Catalogue, stop: Json, told: bool) -> None:
-    assert ("stops_not_counted" in codes(PLAIN | {"emergency_stop": stop}, catalogue)) == told
+@pytest.mark.parametrize(("stop", "has_notice"), [({"torque_Nm": 200}, True), ({"torque_Nm": 200, "count": 9}, False)])
+def test_stops_without_their_number_say_that_it_is_not_judged(
+    catalogue: Catalogue, stop: Json, has_notice: bool
+) -> None:
+    assert ("stops_not_counted" in codes(PLAIN | {"emergency_stop": stop}, catalogue)) == has_notice
 
 
 @pytest.mark.parametrize(
-    ("own", "whole", "told"),
+    ("own", "whole", "has_notice"),
     [
         ((620, 310), 900, True),
         ((620, None), 900, False),
@@ -245,7 +249,7 @@ def test_stops_without_their_number_say_that_it_is_not_judged(catalogue: Catalog
 )
 @pytest.mark.parametrize("direction", ["radial", "axial"])
 def test_a_load_of_the_cycle_that_counts_in_no_phase_is_said_not_to_be_used(
-    catalogue: Catalogue, direction: str, own: tuple[float | None, ...], whole: float | None, told: bool
+    catalogue: Catalogue, direction: str, own: tuple[float | None, ...], whole: float | None, has_notice: bool
 ) -> None:
     name = f"{direction}_N"
     phases = [phase(10, 100) | ({name: load} if load else {}) for load in own]
@@ -253,4 +257,4 @@ def test_a_load_of_the_cycle_that_counts_in_no_phase_is_said_not_to_be_used(
 
     text = notices(answer(document, catalogue)).get(f"{direction}_load_not_used", "")
 
-    assert (f"The {direction} load of the whole cycle, 900 N, is not used" in text) == told
+    assert (f"The {direction} load of the whole cycle, 900 N, is not used" in text) == has_notice

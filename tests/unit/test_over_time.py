@@ -79,12 +79,12 @@ def drawn(document: Json, reader: Reader = DEFAULT, governing: Sequence[int] = (
 def texts(shown: Shown, letter: float = 6.8) -> Iterator[tuple[str, float, float, float, float]]:
     """Text, left, right, top and bottom of every text, by the mean width of the page's letters; an index is smaller."""
     for text in shown.root.iter("text"):
-        said = "".join(text.itertext())
+        message = "".join(text.itertext())
         index = sum(len("".join(part.itertext())) for part in text.iter("tspan") if "index" in part.get("class", ""))
-        width = letter * (len(said) - 0.2 * index)
+        width = letter * (len(message) - 0.2 * index)
         x, y = float(text.get("x", "")), float(text.get("y", ""))
         left = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[text.get("text-anchor", "start")] * width
-        yield said, left, left + width, y - 9, y + 2
+        yield message, left, left + width, y - 9, y + 2
 
 
 # --- Phases -----------------------------------------------------------------------------------------------------------
@@ -99,10 +99,10 @@ def test_steps_are_the_torques_and_speeds_of_the_phases_and_the_pause_is_zero() 
 
 def test_peaks_have_a_line_of_their_own_with_the_sign_of_the_mean_within_the_frame() -> None:
     varying = (phase(30, 100, peak_torque_Nm=45), phase(-20, -80, peak_torque_Nm=33, peak_speed_rpm=120))
-    shown = drawn(cycle(*varying))
+    view = drawn(cycle(*varying))
 
-    assert shown.read(0, "peaks") == pytest.approx([45, 45, -33, -33], abs=0.05)
-    assert shown.read(1, "peaks") == pytest.approx([100, 100, -120, -120], abs=0.1)
+    assert view.read(0, "peaks") == pytest.approx([45, 45, -33, -33], abs=0.05)
+    assert view.read(1, "peaks") == pytest.approx([100, 100, -120, -120], abs=0.1)
     assert drawn(cycle(*EXAMPLE)).of("path", "peaks") == []
 
 
@@ -110,17 +110,17 @@ def test_peaks_have_a_line_of_their_own_with_the_sign_of_the_mean_within_the_fra
 def test_the_cycle_is_drawn_within_its_frame_and_its_numbers_stand_apart(count: int) -> None:
     phases = [phase((-1) ** k * 10.0 * (k % 7), 100.0, 1e-3 if k % 2 else 5.0) for k in range(count)]
     picture = picture_of(cycle(*phases, pause_s=3.0))
-    shown = Shown(picture.drawing)
+    view = Shown(picture.drawing)
 
-    discs = [float(disc.get("cx", "")) for disc in shown.of("circle", "disc")]
+    discs = [float(disc.get("cx", "")) for disc in view.of("circle", "disc")]
     assert len(discs) == {1: 1, 3: 3}.get(count, len(discs))
     assert (len(discs) > 0) == (count <= 24)
-    assert shown.said("phase") == (["tp"] if count <= 24 else [f"1 … {count}", "tp"])
-    places = sorted([*discs, float(shown.of("text", "phase")[-1].get("x", ""))])
+    assert view.said("phase") == (["tp"] if count <= 24 else [f"1 … {count}", "tp"])
+    places = sorted([*discs, float(view.of("text", "phase")[-1].get("x", ""))])
     assert min((after - before for before, after in pairwise(places)), default=18) >= 18  # a disc, and a little more
     assert len(markup(picture.drawing)) < 75_000
     _, _, width, height = map(float, picture.drawing.get("viewBox", "").split())
-    for path in shown.root.iter("path"):
+    for path in view.root.iter("path"):
         for x, y in re.findall(r"(-?[\d.]+) (-?[\d.]+)", path.get("d", "")):
             assert 0 <= float(x) <= width
             assert 0 <= float(y) <= height
@@ -153,21 +153,21 @@ def test_the_cycle_in_words_reaches_from_peak_to_peak() -> None:
 def test_the_name_of_a_phase_is_the_title_of_its_step_and_stands_beside_its_number_where_there_is_room() -> None:
     names = ["lift", "go back", "wait as long as the press is open"]
     phases = (phase(40, 250, 0.3), phase(32, 500, 3), phase(20, 50, 3))
-    shown = drawn(cycle(*(one | {"name": name} for one, name in zip(phases, names, strict=True))))
+    view = drawn(cycle(*(one | {"name": name} for one, name in zip(phases, names, strict=True))))
 
-    assert [step.findtext("title") for step in shown.of("rect", "phase-step")] == names
-    assert shown.said("phase-name") == ["go back"]
-    assert sorted(shown.said("number")) == ["1", "2", "3"]
+    assert [step.findtext("title") for step in view.of("rect", "phase-step")] == names
+    assert view.said("phase-name") == ["go back"]
+    assert sorted(view.said("number")) == ["1", "2", "3"]
 
 
 # --- Limits -----------------------------------------------------------------------------------------------------------
 
 
 def test_limits_far_above_the_cycle_are_named_beyond_the_scale() -> None:
-    shown = drawn(cycle(*EXAMPLE, emergency_stop={"torque_Nm": 200.0}))
+    view = drawn(cycle(*EXAMPLE, emergency_stop={"torque_Nm": 200.0}))
 
-    assert [name.split()[0] for name in shown.said("name")] == ["TN", "Tav", "nav(max)/i", "nout,av"]
-    assert shown.said("beyond") == ["↑ TR 149\u2002↑ Tk 200", "↑ nin(max)/i 1\u202f200"]
+    assert [name.split()[0] for name in view.said("name")] == ["TN", "Tav", "nav(max)/i", "nout,av"]
+    assert view.said("beyond") == ["↑ TR 149\u2002↑ Tk 200", "↑ nin(max)/i 1\u202f200"]
 
 
 @pytest.mark.parametrize(
@@ -182,15 +182,15 @@ def test_limits_far_above_the_cycle_are_named_beyond_the_scale() -> None:
     ],
 )
 def test_the_limit_of_the_check_that_governs_alone_takes_the_accent(check: str | None, accented: str) -> None:
-    shown = drawn(cycle(*EXAMPLE, emergency_stop={"torque_Nm": 200.0}), Reader(), (), check)
-    found = [*shown.of("text", "governing"), *shown.of("tspan", "governing")]
-    assert "".join(text for each in found for text in each.itertext()).strip() == accented
+    view = drawn(cycle(*EXAMPLE, emergency_stop={"torque_Nm": 200.0}), Reader(), (), check)
+    result = [*view.of("text", "governing"), *view.of("tspan", "governing")]
+    assert "".join(text for each in result for text in each.itertext()).strip() == accented
 
 
 def test_phases_that_govern_stand_out_in_the_steps_and_in_their_numbers() -> None:
-    shown = drawn(cycle(*EXAMPLE), Reader(), (1,))
-    assert [step.get("data-phase") for step in shown.of("rect", "governing")] == ["1"]
-    assert [mark.get("data-phase") for mark in shown.of("g", "governing")] == ["1"]
+    view = drawn(cycle(*EXAMPLE), Reader(), (1,))
+    assert [step.get("data-phase") for step in view.of("rect", "governing")] == ["1"]
+    assert [mark.get("data-phase") for mark in view.of("g", "governing")] == ["1"]
 
 
 @pytest.mark.parametrize("reader", [Reader(), Reader("de", ("lb_in",))])
@@ -206,12 +206,12 @@ def test_no_text_lies_over_another_or_outside_whatever_the_limits_are(
         document = document | {"duty_cycle": document["duty_cycle"] | {"phases": phases}}
     for gear in ("HPN-11A-5", "HPN-20A-5", "HPN-32A-25"):
         picture = picture_of(document, reader, designation=gear)
-        found = list(texts(Shown(picture.drawing)))
+        result = list(texts(Shown(picture.drawing)))
         _, _, width, height = map(float, picture.drawing.get("viewBox", "").split())
-        for one, other in combinations(found, 2):
+        for one, other in combinations(result, 2):
             apart = one[2] <= other[1] or other[2] <= one[1] or one[4] <= other[3] + 1 or other[4] <= one[3] + 1
             assert apart, (gear, one, other)
-        assert [one for one in found if one[1] < -1 or one[2] > width + 6 or one[3] < 0 or one[4] > height] == []
+        assert [one for one in result if one[1] < -1 or one[2] > width + 6 or one[3] < 0 or one[4] > height] == []
 
 
 # --- Motions ----------------------------------------------------------------------------------------------------------
@@ -232,9 +232,9 @@ def test_the_curves_of_a_motion_reach_from_its_least_to_its_largest_values(docum
 
 
 def test_phases_are_marked_where_they_begin_moves_are_numbered_and_the_pause_follows_them() -> None:
-    shown = drawn(TURNING)
-    phases = [float(step.get("x", "")) for step in shown.of("rect", "phase-step")]
-    [pause] = shown.of("rect", "pause")
+    view = drawn(TURNING)
+    phases = [float(step.get("x", "")) for step in view.of("rect", "phase-step")]
+    [pause] = view.of("rect", "pause")
     motion = subject_of(TURNING).application.duty_cycle.motion
     assert motion is not None
     begun = np.concatenate(([0.0], np.cumsum(motion.course.duration_s)))
@@ -242,8 +242,8 @@ def test_phases_are_marked_where_they_begin_moves_are_numbered_and_the_pause_fol
     left, right = phases[0], float(pause.get("x", ""))
     assert [*phases, right] == pytest.approx(left + begun / begun[-1] * (right - left), abs=0.01)
     places = [str(k) for k in range(len(motion.phases))]
-    assert [step.get("data-phase") for step in shown.of("rect", "phase-step")] == places
-    numbered = [mark.get("data-phase", "").split() for mark in shown.of("g", "mark")]
+    assert [step.get("data-phase") for step in view.of("rect", "phase-step")] == places
+    numbered = [mark.get("data-phase", "").split() for mark in view.of("g", "mark")]
     of = motion.course.move.tolist()
     assert numbered == [[place for place in places if of[int(place)] == row] for row in range(len(motion.moves))]
 

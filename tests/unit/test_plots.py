@@ -40,9 +40,9 @@ def example(catalogue: Catalogue, designation: str = "HPN-20A-5", **parts: objec
 def picture(subject: Subject) -> BearingPicture:
     loads = subject.application.loads
     life = check(subject, subject.gear.designation, "output_bearing_life") if loads else None
-    found = bearing_picture(subject, life)
-    assert found is not None
-    return found
+    result = bearing_picture(subject, life)
+    assert result is not None
+    return result
 
 
 def figure_of(shown: BearingPicture, reader: Reader = DEFAULT, governing: Sequence[int] = ()) -> Figure:
@@ -52,9 +52,9 @@ def figure_of(shown: BearingPicture, reader: Reader = DEFAULT, governing: Sequen
 def check(subject: Subject, designation: str, code: str) -> CheckResult:
     candidate = select(subject.application, subject.catalogue).candidate(designation)
     assert candidate is not None
-    found = candidate.check(code)
-    assert found is not None
-    return found
+    result = candidate.check(code)
+    assert result is not None
+    return result
 
 
 def traces(figure: Figure, kind: str) -> list[Json]:
@@ -68,13 +68,13 @@ def test_figures_of_the_bearing_are_valid_in_every_model(
 ) -> None:
     catalogue = supplemented(bearing_envelopes=CURVES)
     subject = example(catalogue, output_load=LOADS | {"model": model, "load_coefficient": coefficient})
-    shown = picture(subject)
+    view = picture(subject)
 
-    figure = figure_of(shown)
+    figure = figure_of(view)
 
     go.Figure(figure)
-    uses = size_uses(subject, shown)
-    sizes = sizes_figure(sizes_scene(uses, shown), uses, shown)
+    uses = size_uses(subject, view)
+    sizes = sizes_figure(sizes_scene(uses, view), uses, view)
     go.Figure(sizes)
     drawn = {trace["meta"]["load_coefficient"] for trace in traces(figure, "limit") + traces(figure, "coefficient")}
     assert drawn == {1.0, 1.2, 1.5, coefficient}
@@ -85,42 +85,42 @@ def test_figures_of_the_bearing_are_valid_in_every_model(
 @pytest.mark.parametrize("life_h", [1000.0, 60_000.0])
 def test_each_curve_of_the_plot_has_the_drawings_name_on_it_and_no_legend(catalogue: Catalogue, life_h: float) -> None:
     subject = example(catalogue, output_load=LOADS | {"life_h": life_h})
-    shown = picture(subject)
+    view = picture(subject)
 
-    figure = figure_of(shown)
+    figure = figure_of(view)
 
     assert figure["layout"]["showlegend"] is False
     kinds = ("limit", "coefficient", "single")
     names = [[trace["meta"]["label"]] for kind in kinds for trace in traces(figure, kind)]
     names += [trace["text"] for trace in traces(figure, "equivalent")]
-    single = [["single load"]] if shown.life_factor < 1 else []
+    single = [["single load"]] if view.life_factor < 1 else []
     life = [["f<sub>w</sub> 1"], ["f<sub>w</sub> 1.5"]]
     assert sorted(names) == sorted([["limit now, f<sub>w</sub> 1.2"], *life, *single, ["P<sub>m</sub>"]])
-    drawing = "".join(chart(envelope_scene(shown), DEFAULT).itertext())
+    drawing = "".join(chart(envelope_scene(view), DEFAULT).itertext())
     assert all(re.sub("<.*?>", "", name) in drawing.replace("f_w", "fw") for one in names for name in one)
 
 
 @pytest.mark.parametrize("model", ["linear", "iso281", "digitised"])
 def test_the_picture_uses_what_the_checks_say(supplemented: Supplement, model: str) -> None:
     subject = example(supplemented(bearing_envelopes=CURVES), output_load=LOADS | {"model": model})
-    shown = picture(subject)
+    view = picture(subject)
 
     largest, life = (check(subject, "HPN-20A-5", f"output_bearing_{name}") for name in ("load", "life"))
-    assert shown.worst.published == largest.utilisation
+    assert view.worst.published == largest.utilisation
     candidate = select(subject.application, subject.catalogue).candidate("HPN-20A-5")
     assert candidate is not None
-    assert shown.life_h == pytest.approx(candidate.bearing_life_L50_h, rel=1e-12)
-    assert shown.life_utilisation == pytest.approx(life.utilisation, rel=1e-14)
-    assert shown.life_factor == life.limit
+    assert view.life_h == pytest.approx(candidate.bearing_life_L50_h, rel=1e-12)
+    assert view.life_utilisation == pytest.approx(life.utilisation, rel=1e-14)
+    assert view.life_factor == life.limit
 
 
 def test_distance_leads_from_the_worst_load_to_the_published_curve(catalogue: Catalogue) -> None:
-    shown = picture(example(catalogue, output_load=LOADS))
-    line = traces(figure_of(shown), "distance")[0]
+    view = picture(example(catalogue, output_load=LOADS))
+    line = traces(figure_of(view), "distance")[0]
 
     radial, axial = line["x"][1], line["y"][1]
     assert 1.2 * (radial / 1800 + axial / 2200) == pytest.approx(1, rel=1e-12)
-    assert shown.worst.distance_N == pytest.approx(
+    assert view.worst.distance_N == pytest.approx(
         ((radial - line["x"][0]) ** 2 + (axial - line["y"][0]) ** 2) ** 0.5, rel=1e-12
     )
 
@@ -129,26 +129,26 @@ def test_phases_with_one_load_are_one_point(catalogue: Catalogue) -> None:
     phases = [phase(10, 100, 1.0, radial_N=300)] * 3 + [phase(10, 100, 1.0, radial_N=100)]
     subject = shown_on(cycle(*phases), catalogue)
 
-    shown = picture(subject)
-    figure = figure_of(shown, governing=(1,))
+    view = picture(subject)
+    figure = figure_of(view, governing=(1,))
     points = traces(figure, "load")[0]
 
     assert points["text"] == ["phase 1–3", "phase 4"]
     assert points["x"] == [300, 100]
     assert points["marker"]["color"] == ["var(--governing)", "var(--ink)"]
-    assert set(traces(figure_of(shown), "load")[0]["marker"]["color"]) == {"var(--ink)"}
+    assert set(traces(figure_of(view), "load")[0]["marker"]["color"]) == {"var(--ink)"}
     go.Figure(figure)
 
 
 def test_of_very_many_loads_the_worst_are_shown_and_the_rest_counted(catalogue: Catalogue) -> None:
     phases = [phase(1, 100, 1.0, radial_N=float(k)) for k in range(1000)]
     subject = shown_on(cycle(*phases), catalogue)
-    shown = picture(subject)
+    view = picture(subject)
 
-    assert len(shown.loads) == 200
-    assert shown.hidden == 800
-    assert shown.worst.phases == "1000"
-    go.Figure(figure_of(shown))
+    assert len(view.loads) == 200
+    assert view.hidden == 800
+    assert view.worst.phases == "1000"
+    go.Figure(figure_of(view))
 
 
 def test_axes_stay_for_any_load_within_the_limits_and_widen_beyond(catalogue: Catalogue) -> None:
@@ -164,8 +164,8 @@ def test_axes_stay_for_any_load_within_the_limits_and_widen_beyond(catalogue: Ca
 
 
 def words(document: Json, catalogue: Catalogue) -> str:
-    shown = picture(shown_on(document, catalogue))
-    return " ".join(sentence.text for sentence in (bearing_verdict(shown), *bearing_words(shown)))
+    view = picture(shown_on(document, catalogue))
+    return " ".join(sentence.text for sentence in (bearing_verdict(view), *bearing_words(view)))
 
 
 def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
@@ -183,7 +183,7 @@ def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
 
 
 @pytest.mark.parametrize(
-    ("radial", "said"),
+    ("radial", "message"),
     [
         (1260.0, "The output bearing carries these loads within u = 80 %."),
         (1530.0, "The loads exceed u = 80 %: they use 85 % of the permissible load of the output bearing."),
@@ -192,25 +192,25 @@ def test_the_words_say_what_governs(catalogue: Catalogue) -> None:
     ],
 )
 def test_a_reserve_of_ones_own_is_named_and_no_load_within_the_maximum_is_said_not_to_be_carried(
-    catalogue: Catalogue, radial: float, said: str
+    catalogue: Catalogue, radial: float, message: str
 ) -> None:
     document = cycle(phase(10, 50), output_load={"radial_N": radial}, requirements={"utilisation": 0.8})
-    assert words(document, catalogue).startswith(said)
+    assert words(document, catalogue).startswith(message)
 
 
 def test_the_condition_of_the_curves_names_speed_life_basis_and_a_reserve_of_ones_own(catalogue: Catalogue) -> None:
     load = {"radial_N": 100.0, "life_h": 8000.0, "life_basis": "L10"}
     plain, reserved = (
-        picture(shown_on(cycle(phase(10, 50), output_load=load, requirements=asked), catalogue)).condition.text
-        for asked in ({}, {"utilisation": 0.8})
+        picture(shown_on(cycle(phase(10, 50), output_load=load, requirements=case), catalogue)).condition.text
+        for case in ({}, {"utilisation": 0.8})
     )
     assert (plain, reserved) == ("50 rpm, 8000 h, L10", "50 rpm, 8000 h, L10, u = 80 %")
 
 
 def test_a_use_next_to_its_limit_is_never_called_100_percent(catalogue: Catalogue) -> None:
-    said = words(cycle(phase(10, 50), output_load={"radial_N": 1800.0001}), catalogue)
-    assert ": 100 %" not in said
-    assert "100.00" in said
+    message = words(cycle(phase(10, 50), output_load={"radial_N": 1800.0001}), catalogue)
+    assert ": 100 %" not in message
+    assert "100.00" in message
 
 
 def test_without_limits_there_is_no_picture_of_the_bearing(catalogue: Catalogue) -> None:
@@ -253,7 +253,7 @@ def test_without_a_stop_that_is_permitted_once_the_line_stands_alone(catalogue: 
 
 
 @pytest.mark.parametrize(
-    ("stop", "said"),
+    ("stop", "message"),
     [
         ({"torque_Nm": 200.0, "count": 1000}, "permits 3066035 stops over the life; your 1000 use 0.0326 %"),
         ({"torque_Nm": -200.0}, "At 200 Nm equation 17.9 permits 3066035 stops over the life."),
@@ -263,10 +263,10 @@ def test_without_a_stop_that_is_permitted_once_the_line_stands_alone(catalogue: 
         (None, "Enter an emergency-stop torque"),
     ],
 )
-def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, said: str) -> None:
+def test_emergency_stops_in_words(catalogue: Catalogue, stop: Json | None, message: str) -> None:
     subject = example(catalogue, emergency_stop=stop)
     words = emergency_stop_words(subject)
-    assert said in " ".join(sentence.text for sentence in words)
+    assert message in " ".join(sentence.text for sentence in words)
 
 
 @pytest.mark.parametrize(
@@ -293,8 +293,8 @@ def test_emergency_stops_of_an_unrated_gear_have_words_but_no_drawing(catalogue:
 
 
 def test_a_reader_of_other_units_sees_other_numbers(catalogue: Catalogue) -> None:
-    shown = picture(example(catalogue, output_load=LOADS))
-    figure, plain = figure_of(shown, Reader(units=("lbf",))), figure_of(shown)
+    view = picture(example(catalogue, output_load=LOADS))
+    figure, plain = figure_of(view, Reader(units=("lbf",))), figure_of(view)
     pairs = [
         (figure["data"][0]["x"], plain["data"][0]["x"]),
         (figure["layout"]["xaxis"]["range"], plain["layout"]["xaxis"]["range"]),

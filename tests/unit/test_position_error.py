@@ -30,7 +30,7 @@ def error_of(application: Json, catalogue: Catalogue) -> float:
 
 
 @pytest.mark.parametrize(
-    ("phases", "asked", "span_Nm", "backlash"),
+    ("phases", "question", "span_Nm", "backlash"),
     [
         ([phase(40, 100, peak_torque_Nm=55), phase(-20, 100)], {}, 75, True),
         ([phase(-40, 100, peak_torque_Nm=55), phase(-20, 100)], {}, 55, True),  # down to 0
@@ -50,33 +50,33 @@ def error_of(application: Json, catalogue: Catalogue) -> float:
     ],
 )
 def test_the_error_spans_the_torques_of_the_phases_that_count(
-    catalogue: Catalogue, phases: list[Json], asked: Json, span_Nm: float, backlash: bool
+    catalogue: Catalogue, phases: list[Json], question: Json, span_Nm: float, backlash: bool
 ) -> None:
-    error = error_of(cycle(*phases, requirements=asked), catalogue)
+    error = error_of(cycle(*phases, requirements=question), catalogue)
     assert error == pytest.approx(8 + span_Nm * PER_NM + 5 * backlash, rel=1e-12)
 
 
 @pytest.mark.parametrize(("at", "span_Nm"), [("cycle", 46), ("rest", 12)])
 def test_friction_holds_the_axis_in_the_pause_too(catalogue: Catalogue, at: str, span_Nm: float) -> None:
-    asked = {"rest_friction_Nm": 6, "position_error_at": at, "load_reverses": False}
-    error = error_of(cycle(phase(40, 100), pause_s=2, requirements=asked), catalogue)
+    question = {"rest_friction_Nm": 6, "position_error_at": at, "load_reverses": False}
+    error = error_of(cycle(phase(40, 100), pause_s=2, requirements=question), catalogue)
     assert error == pytest.approx(8 + span_Nm * PER_NM + 5, rel=1e-12)
 
 
 def test_a_phase_that_varies_without_a_least_torque_is_told_by_its_number(catalogue: Catalogue) -> None:
     varying = [phase(40, 100), phase(40, 100, peak_torque_Nm=55), phase(0, 0, peak_torque_Nm=5), phase(9, 9)]
     reply = answer(cycle(*varying, phase(8, 9, rms_torque_Nm=7)), catalogue)
-    [told] = [notice for notice in reply["notices"] if notice["code"] == "torque_range_not_given"]
-    assert told["values"] == {"phases": "2, 5"}
-    said = [entry | {"least_torque_Nm": 0.0} for entry in varying]
-    assert "torque_range_not_given" not in notices(answer(cycle(*said), catalogue))
+    [message] = [notice for notice in reply["notices"] if notice["code"] == "torque_range_not_given"]
+    assert message["values"] == {"phases": "2, 5"}
+    values = [entry | {"least_torque_Nm": 0.0} for entry in varying]
+    assert "torque_range_not_given" not in notices(answer(cycle(*values), catalogue))
     assert "torque_range_not_given" not in notices(answer({"duty_cycle": {"motion": SWIVEL}}, catalogue))
 
 
 def test_many_phases_are_not_all_named(catalogue: Catalogue) -> None:
     phases = [phase(40, 100, peak_torque_Nm=55 if k % 2 else 40) for k in range(200)]
-    [told] = [n for n in answer(cycle(*phases), catalogue)["notices"] if n["code"] == "torque_range_not_given"]
-    assert told["values"]["phases"].endswith("38, 40, …")
+    [notice] = [n for n in answer(cycle(*phases), catalogue)["notices"] if n["code"] == "torque_range_not_given"]
+    assert notice["values"]["phases"].endswith("38, 40, …")
 
 
 @pytest.mark.parametrize(
@@ -117,9 +117,9 @@ def test_dry_friction_of_a_dwell_takes_the_mechanism_s_efficiency_and_ratio(cata
             {"profile": "trapezoidal", "angle_deg": 9, "time_s": 9},
         ],
     }
-    asked = {"position_error_at": "rest", "ratios": [5], "sizes": ["20A"]}
+    question = {"position_error_at": "rest", "ratios": [5], "sizes": ["20A"]}
     for pause_s, low in ((0.0, (20 - 16 / 0.8) / 2), (1.0, -6 / 0.8 / 2)):
-        error = error_of({"duty_cycle": {"motion": motion, "pause_s": pause_s}, "requirements": asked}, catalogue)
+        error = error_of({"duty_cycle": {"motion": motion, "pause_s": pause_s}, "requirements": question}, catalogue)
         assert error == pytest.approx(8 + (16 / 0.8 / 2 - low) * PER_NM + 5, rel=1e-12)
 
 
@@ -130,8 +130,8 @@ def test_a_motion_whose_phases_are_typed_keeps_its_position_error(
 ) -> None:
     """The largest friction of all rests holds in each: the same where they are alike, else a bound."""
     motion = INDEXED | {"mechanism": INDEXED["mechanism"] | {"efficiency": efficiency}}
-    asked = {"duty_cycle": {"motion": motion, "pause_s": 1}, "requirements": {"position_error_at": at}}
-    application = Application.model_validate(asked)
+    document = {"duty_cycle": {"motion": motion, "pause_s": 1}, "requirements": {"position_error_at": at}}
+    application = Application.model_validate(document)
     typed = followed(application, Way(torque=0.5))
     one, other = (select(each, catalogue).candidate(GEAR) for each in (application, typed))
     assert one and other and one.position_error_arcmin and other.position_error_arcmin
@@ -166,7 +166,7 @@ def test_a_link_has_what_the_position_error_takes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("asked", "said"),
+    ("question", "messages"),
     [
         ({"duty_cycle": {"motion": INDEXED}}, ("along the motion", "R = ((|T_load| + T_s) / η")),
         (cycle(phase(40, 100), phase(-9, 0), requirements={"rest_friction_Nm": 6}), ("of each phase", "by 6 Nm.")),
@@ -174,25 +174,25 @@ def test_a_link_has_what_the_position_error_takes() -> None:
     ],
 )
 def test_the_calculation_says_where_both_torques_come_from(
-    catalogue: Catalogue, asked: Json, said: tuple[str, ...]
+    catalogue: Catalogue, question: Json, messages: tuple[str, ...]
 ) -> None:
-    application = Application.model_validate(asked)
+    application = Application.model_validate(question)
     gear, reply = catalogue.by_designation[GEAR], select(application, catalogue)
-    found = reply.candidate(GEAR)
-    assert found is not None
-    steps = {step.code: step for step in calculation_of(found, reply.duty, gear, application, catalogue)}
+    result = reply.candidate(GEAR)
+    assert result is not None
+    steps = {step.code: step for step in calculation_of(result, reply.duty, gear, application, catalogue)}
     text = " ".join(note.text for note in steps["position_error"].notes)
-    assert all(part in text for part in said), text
+    assert all(part in text for part in messages), text
     assert len(steps["position_error"].lines) == 2
 
 
 def test_an_error_that_an_earlier_version_saved_is_not_written_as_the_new_sum(catalogue: Catalogue) -> None:
     application = Application.model_validate({"duty_cycle": {"motion": SWIVEL}})
     gear, reply = catalogue.by_designation["HPN-11A-40"], select(application, catalogue)
-    found = reply.candidate("HPN-11A-40")
-    assert found is not None
-    kept = msgspec.structs.replace(found, position_error_arcmin=12.81)
-    steps = {step.code: step for step in calculation_of(kept, reply.duty, gear, application, catalogue)}
+    result = reply.candidate("HPN-11A-40")
+    assert result is not None
+    record = msgspec.structs.replace(result, position_error_arcmin=12.81)
+    steps = {step.code: step for step in calculation_of(record, reply.duty, gear, application, catalogue)}
     assert steps["position_error"].lines == ()
 
 

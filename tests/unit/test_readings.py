@@ -20,11 +20,11 @@ LIGHT_STOPS = worked_example(emergency_stop={"torque_Nm": 5, "count": 10}, requi
 
 def readings(application: Json, designation: str, catalogue: Catalogue) -> dict[str, CheckReading]:
     """Readings of a gear's checks."""
-    asked = Application.model_validate(application)
-    selection = select(asked, catalogue)
+    question = Application.model_validate(application)
+    selection = select(question, catalogue)
     candidate = selection.candidate(designation)
     assert candidate is not None
-    return readings_of(candidate, selection, asked, catalogue)
+    return readings_of(candidate, selection, question, catalogue)
 
 
 def test_the_load_of_the_worst_phase_stands_beside_the_published_maximum_in_its_direction(catalogue: Catalogue) -> None:
@@ -93,13 +93,13 @@ def test_a_torque_with_the_gears_no_load_torque_in_it_is_no_quotient_of_the_load
     """Nor without a motion; of a gear that the supplement does not name it stays one."""
     catalogue = supplemented(gears="size,ratio,stages,no_load_torque_Nm,source\n20A,5,1,0.5,measured\n")
     motor = {"peak_torque_Nm": 50}
-    asked = worked_example(requirements={"motor": motor, "ratios": ratios, "sizes": ["20A"]})
-    application = Application.model_validate(asked)
+    question = worked_example(requirements={"motor": motor, "ratios": ratios, "sizes": ["20A"]})
+    application = Application.model_validate(question)
     selection = select(application, catalogue)
 
     for gear in selection.candidates:
         symbols = [line.named.symbol for line in Account(selection, gear, application, catalogue).figures]
-        relation = readings(asked, gear.designation, catalogue)["motor_peak_torque"].relation
+        relation = readings(question, gear.designation, catalogue)["motor_peak_torque"].relation
         own = gear.ratio == 5
         assert ("T_in,max" in symbols, "T_max/(i·η)" in symbols) == (own, not own)
         assert relation == f"{'T_in,max' if own else 'T_max / (i · η)'} ≤ T_mot"
@@ -126,8 +126,8 @@ def test_a_reading_compares_as_its_check_does(catalogue: Catalogue) -> None:
 
 
 def test_without_application_or_catalogue_the_pure_numbers_stand(catalogue: Catalogue) -> None:
-    asked = Application.model_validate(cycle(phase(1.0, 100.0), output_load={"radial_N": 900.0}))
-    selection = select(asked, catalogue)
+    application = Application.model_validate(cycle(phase(1.0, 100.0), output_load={"radial_N": 900.0}))
+    selection = select(application, catalogue)
     read = readings_of(selection.candidates[0], selection, None, None)
     check = selection.candidates[0].check("output_bearing_load")
     assert check is not None

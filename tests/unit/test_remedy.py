@@ -48,12 +48,12 @@ def test_a_suitable_and_an_unrated_gear_need_no_remedy(catalogue: Catalogue) -> 
 def test_a_gear_that_fails_what_is_known_of_it_gets_no_promise_about_what_is_not(catalogue: Catalogue) -> None:
     """Five times what HPN-32A may carry, on a motor a twentieth too slow for HPN-40A-7."""
     wishes = {"sizes": ["32A", "40A"], "motor": {"maximum_speed_rpm": 4000}}
-    asked = cycle(phase(2000, 600), requirements=wishes)
-    selection = selected(asked, catalogue)
+    question = cycle(phase(2000, 600), requirements=wishes)
+    selection = selected(question, catalogue)
     first = selection.candidates[0]
 
     assert (first.designation, first.status) == ("HPN-40A-7", "unsuitable")
-    assert words(asked, "HPN-40A-7", catalogue) is None
+    assert words(question, "HPN-40A-7", catalogue) is None
     assert ways_of(first) == ()
     assert selection.foremost.size == "32A"
 
@@ -72,8 +72,10 @@ def test_a_bearing_life_that_fails_alone_can_be_mended_by_load_or_by_speed(catal
 
 def test_one_change_that_suffices_alone_comes_before_two(catalogue: Catalogue) -> None:
     lives = {"requirements": {"life_h": 2_334_551.88}, "output_load": {"radial_N": 500.0, "life_h": 3_000_000.0}}
-    said = words(worked_example() | lives, "HPN-20A-5", catalogue)
-    assert said and re.search(r"\(1\) speeds drop to [0-9.]+ %; \(2\) torques drop to 81.2 % and output", said), said
+    message = words(worked_example() | lives, "HPN-20A-5", catalogue)
+    assert message and re.search(r"\(1\) speeds drop to [0-9.]+ %; \(2\) torques drop to 81.2 % and output", message), (
+        message
+    )
 
 
 def test_properties_that_fail_name_the_limit_that_has_to_change(catalogue: Catalogue) -> None:
@@ -109,8 +111,8 @@ def test_following_the_remedy_makes_the_gear_of_the_worked_example_suitable(cata
 
 
 def test_a_motor_torque_that_follows_an_efficiency_curve_says_why_its_growth_is_missing(catalogue: Catalogue) -> None:
-    asked = worked_example(requirements={"motor": {"peak_torque_Nm": 50}})
-    gear = chosen(selected(asked, catalogue), "HPN-20A-5")
+    application = worked_example(requirements={"motor": {"peak_torque_Nm": 50}})
+    gear = chosen(selected(application, catalogue), "HPN-20A-5")
     [torque, *_] = growths_of(gear)["motor_peak_torque"]
     assert torque.factor is not None
     unknown = structs.replace(gear.reserve, torque_factor=None)  # as with a supplied curve
@@ -149,10 +151,10 @@ def test_bounds_are_rounded_to_the_safe_side(value: float, digits: int, down: st
 def test_a_remedy_that_is_tried_out_passes_to_the_last_digit(catalogue: Catalogue) -> None:
     """0.8 of this speed has more than twelve digits: rounded to the nearest it would be too much by a part in 1e12."""
     wishes = {"ratios": [35], "sizes": ["14A"], "utilisation": 0.8}
-    asked = Application.model_validate(cycle(phase(1, 171.42857142857142), pause_s=3, requirements=wishes))
-    [way] = ways_of(select(asked, catalogue).candidates[0], 0.8)
+    application = Application.model_validate(cycle(phase(1, 171.42857142857142), pause_s=3, requirements=wishes))
+    [way] = ways_of(select(application, catalogue).candidates[0], 0.8)
 
-    assert select(followed(asked, way), catalogue).selected == "HPN-14A-35"
+    assert select(followed(application, way), catalogue).selected == "HPN-14A-35"
 
 
 def test_a_motor_at_a_smaller_torque_is_promised_nothing_where_a_curve_says_what_it_takes(
@@ -174,15 +176,15 @@ def test_no_smaller_torque_is_promised_to_a_motor_that_turns_a_gear_with_a_torqu
 ) -> None:
     """40 Nm / 5 + 4 Nm are 12 Nm; at 8 Nm of the motor 20 Nm are left, half of the torque and not two thirds."""
     book = supplemented(gears="size,ratio,stages,no_load_torque_Nm,source\n20A,5,1,4,measured\n")
-    asked = {"ratios": [5], "sizes": ["20A"], "motor": {"peak_torque_Nm": 8.0}}
-    application = Application.model_validate(cycle(phase(40, 250), requirements=asked))
+    document = {"ratios": [5], "sizes": ["20A"], "motor": {"peak_torque_Nm": 8.0}}
+    application = Application.model_validate(cycle(phase(40, 250), requirements=document))
     gear = chosen(select(application, book), "HPN-20A-5")
 
     assert gear.reserve.torque_factor is None
     assert growths_of(gear)["motor_peak_torque"][0].factor is None
     for alternative in alternatives_of(gear):
         assert chosen(select(tried(application, alternative, book), book), "HPN-20A-5").status == "suitable"
-    assert words(cycle(phase(40, 250), requirements=asked), "HPN-20A-5", book) == (
+    assert words(cycle(phase(40, 250), requirements=document), "HPN-20A-5", book) == (
         "Fits if the motor’s peak torque rises to 12 Nm."
     )
 
@@ -201,8 +203,8 @@ SCREW: Json = {
 def test_a_motor_too_slow_by_its_own_inertia_may_be_faster(catalogue: Catalogue, own: Json, u: float) -> None:
     """The motor's own limits have a closed form where speeds and torques have none; a hair less fails."""
     motor = {"maximum_speed_rpm": 4500, "inertia_kgm2": 0.0003} | own
-    asked = {"duty_cycle": {"motion": SCREW, "pause_s": 1}, "requirements": {"motor": motor, "utilisation": u}}
-    application, mended = Application.model_validate(asked), 0
+    document = {"duty_cycle": {"motion": SCREW, "pause_s": 1}, "requirements": {"motor": motor, "utilisation": u}}
+    application, mended = Application.model_validate(document), 0
     for gear in select(application, catalogue).candidates:
         codes = {check.code for check in gear.failing}
         if not codes or not gear.is_judged or any(not code.startswith("motor_") for code in codes):
@@ -223,14 +225,14 @@ def test_a_motor_too_slow_by_its_own_inertia_may_be_faster(catalogue: Catalogue,
     assert mended > 3
     if own["peak_torque_Nm"] == 9 and u == 1:
         expected = "Fits if the motor’s maximum speed rises to 4800 rpm."
-        assert words(asked, "HPN-11A-4", catalogue) == expected
+        assert words(document, "HPN-11A-4", catalogue) == expected
 
 
 def test_a_brake_that_does_not_stop_the_load_has_no_alternative_whatever_else_fails(catalogue: Catalogue) -> None:
     hanging = {"type": "rotary", "inertia_kgm2": 7.0, "gravity_mass_kg": 100.0, "gravity_radius_mm": 250.0}
     motion = {"mechanism": hanging, "moves": [{"profile": "triangular", "angle_deg": 90.0, "time_s": 9.0}]}
-    asked = {"sizes": ["32A"], "weight_kg": 1.0}
-    weak = {"duty_cycle": {"motion": motion}, "emergency_stop": {"brake": {"torque_Nm": 0.1}}, "requirements": asked}
+    document = {"sizes": ["32A"], "weight_kg": 1.0}
+    weak = {"duty_cycle": {"motion": motion}, "emergency_stop": {"brake": {"torque_Nm": 0.1}}, "requirements": document}
     for gear in selected(weak, catalogue).candidates:
         assert {"momentary_peak_torque", "weight"} <= {check.code for check in gear.failing}
         assert alternatives_of(gear) == ()
@@ -243,11 +245,12 @@ LIFTING_ONLY = {
 
 
 @pytest.mark.parametrize(
-    "asked", [{"position_error_arcmin": 9.0}, {"natural_frequency_Hz": 25.0}, {"torsional_stiffness_Nm_per_rad": 27e3}]
+    "question",
+    [{"position_error_arcmin": 9.0}, {"natural_frequency_Hz": 25.0}, {"torsional_stiffness_Nm_per_rad": 27e3}],
 )
-def test_each_change_of_a_motion_makes_the_gear_fit_as_it_is_printed(asked: Json, catalogue: Catalogue) -> None:
+def test_each_change_of_a_motion_makes_the_gear_fit_as_it_is_printed(question: Json, catalogue: Catalogue) -> None:
     """Torques all of one sign keep it where phases take the place of the motion: nothing acts both ways."""
-    document = {"duty_cycle": {"motion": LIFTING_ONLY}, "requirements": {"sizes": ["14A", "20A"]} | asked}
+    document = {"duty_cycle": {"motion": LIFTING_ONLY}, "requirements": {"sizes": ["14A", "20A"]} | question}
     application = Application.model_validate(document)
     rejected = [one for one in select(application, catalogue).candidates if one.status == "unsuitable"]
     alternatives = [(gear.designation, change) for gear in rejected for change in alternatives_of(gear)]
@@ -259,13 +262,13 @@ def test_each_change_of_a_motion_makes_the_gear_fit_as_it_is_printed(asked: Json
 
 def test_each_check_says_how_far_its_own_drivers_may_grow(catalogue: Catalogue) -> None:
     """By hand: 80 / 32.021, 149 / 40 and 256 / 200 Nm, 3066035 of 1000 stops, 3000 / 1087.66 and 6000 / 2500 rpm."""
-    asked = worked_example(
+    application = worked_example(
         requirements={"life_h": 20_000, "weight_kg": 2.0}, emergency_stop={"torque_Nm": 200, "count": 1000}
     )
-    growths = growths_of(chosen(selected(asked, catalogue), "HPN-20A-5"))
-    told = {code: [(one.driver, one.bound.text) for one in found] for code, found in growths.items()}
+    growths = growths_of(chosen(selected(application, catalogue), "HPN-20A-5"))
+    by_name = {code: [(one.driver, one.bound.text) for one in result] for code, result in growths.items()}
 
-    assert told == {
+    assert by_name == {
         "average_torque": [("torque", "up to 249 %")],
         "repeated_peak_torque": [("torque", "up to 372 %")],
         "momentary_peak_torque": [("emergency_stop", "up to 128 %")],

@@ -23,7 +23,7 @@ def first(application: Json, catalogue: Catalogue) -> Candidate:
 
 
 @pytest.mark.parametrize(
-    ("torque", "reason", "told"),
+    ("torque", "reason", "message"),
     [
         (40, f"Every check passes; the closest is {TORQUE} at 50.0 % of its limit.", "at 50 %"),
         (40.046, f"Every check passes; the closest is {TORQUE} at 50.1 % of its limit.", "at 50.1 %"),
@@ -33,14 +33,16 @@ def first(application: Json, catalogue: Catalogue) -> Candidate:
     ],
 )
 def test_a_reason_names_the_closest_check_in_percent_that_tell_it_from_its_limit(
-    catalogue: Catalogue, torque: float, reason: str, told: str
+    catalogue: Catalogue, torque: float, reason: str, message: str
 ) -> None:
     gear = first(cycle(phase(torque, 100), requirements=ONLY), catalogue)
 
     assert gear.reason == reason
     sentence = reason_of(gear, 1.0)
-    assert told in sentence.text
-    assert sentence.text.replace(told, "") == reason.replace(f"{told.removesuffix(' %')}.0 %", "").replace(told, "")
+    assert message in sentence.text
+    assert sentence.text.replace(message, "") == reason.replace(f"{message.removesuffix(' %')}.0 %", "").replace(
+        message, ""
+    )
     assert sentence.translated == ("check",)
 
 
@@ -108,8 +110,8 @@ def test_a_wish_that_leaves_no_gear_is_refused_with_what_there_is(
     with pytest.raises(InputError) as refused:
         select(Application.model_validate(cycle(phase(1, 1), requirements=wishes)), catalogue)
 
-    said = {"sizes": ", ".join(catalogue.sizes)}
-    assert list(refused.value.problems) == [(place, text.format_map(said)) for place, text in problems]
+    document = {"sizes": ", ".join(catalogue.sizes)}
+    assert list(refused.value.problems) == [(place, text.format_map(document)) for place, text in problems]
 
 
 def test_printed_curves_that_nobody_supplied_are_refused_where_they_are_asked_for(catalogue: Catalogue) -> None:
@@ -142,11 +144,14 @@ def test_the_foremost_gear_is_judged_wherever_one_is(catalogue: Catalogue) -> No
 
     assert selected(["20A", "40A"]).foremost.designation == "HPN-20A-5"
     assert selected(["40A"]).foremost.designation == "HPN-40A-5"
-    found = selected(["20A", "32A"])
-    assert [gear and gear.size for gear in (found.candidate("HPN-32A-5"), found.candidate("HPN-9A-5"))] == ["32A", None]
-    assert [check.code for check in found.candidates[0].failing] == ["average_torque", "repeated_peak_torque"]
-    assert found.selected is None
-    assert found.link == ""
+    result = selected(["20A", "32A"])
+    assert [gear and gear.size for gear in (result.candidate("HPN-32A-5"), result.candidate("HPN-9A-5"))] == [
+        "32A",
+        None,
+    ]
+    assert [check.code for check in result.candidates[0].failing] == ["average_torque", "repeated_peak_torque"]
+    assert result.selected is None
+    assert result.link == ""
 
 
 def test_a_gear_is_judged_where_every_check_is_rated_and_names_its_checks(catalogue: Catalogue) -> None:
@@ -155,7 +160,7 @@ def test_a_gear_is_judged_where_every_check_is_rated_and_names_its_checks(catalo
 
     assert [check.status == "not_rated" for check in unrated.checks] == [True, True, True, True, False]
     assert (rated.is_judged, unrated.is_judged) == (True, False)
-    assert [found and found.code for found in map(rated.check, ("torsional_stiffness", "life"))] == [
+    assert [result and result.code for result in map(rated.check, ("torsional_stiffness", "life"))] == [
         "torsional_stiffness",
         None,
     ]

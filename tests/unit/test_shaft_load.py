@@ -20,7 +20,7 @@ DRIVE: Json = {"type": "belt", "diameter_mm": 80.0}
 
 
 @pytest.mark.parametrize(
-    ("application", "place", "said"),
+    ("application", "place", "message"),
     [
         (cycle(phase(1, 1), output_load={"from_motion": True}), ("from_motion",), "motion of a rack or belt"),
         (axis(RACK | {"ratio": 2}), ("from_motion",), "ratio 1"),
@@ -35,10 +35,10 @@ DRIVE: Json = {"type": "belt", "diameter_mm": 80.0}
         (cycle(phase(1, 1), output_load={"from_motion": False}), (), "no load"),
     ],
 )
-def test_a_drive_is_refused_where_it_stands(application: Json, place: tuple[str, ...], said: str) -> None:
+def test_a_drive_is_refused_where_it_stands(application: Json, place: tuple[str, ...], message: str) -> None:
     errors = refused(application)
     assert list(errors) == [("output_load", *place)]
-    assert said in errors["output_load", *place]
+    assert message in errors["output_load", *place]
 
 
 @pytest.mark.parametrize(
@@ -50,10 +50,10 @@ def test_a_drive_is_refused_where_it_stands(application: Json, place: tuple[str,
     ],
 )
 def test_a_link_keeps_what_sits_on_the_shaft(application: Json, end: str) -> None:
-    asked = Application.model_validate(application)
-    link = to_link(asked)
+    question = Application.model_validate(application)
+    link = to_link(question)
     assert link.endswith(end)
-    assert read(link.removeprefix("/?")).application == asked
+    assert read(link.removeprefix("/?")).application == question
 
 
 def test_one_press_counts_the_load_of_the_motion() -> None:
@@ -64,7 +64,7 @@ def test_one_press_counts_the_load_of_the_motion() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "told"),
+    ("changed", "has_notice"),
     [
         ({}, True),
         ({"type": "belt"}, True),
@@ -72,16 +72,16 @@ def test_one_press_counts_the_load_of_the_motion() -> None:
     ],
 )
 def test_an_uncounted_load_is_told_where_a_wheel_may_sit_on_the_shaft(
-    catalogue: Catalogue, changed: Json, told: bool
+    catalogue: Catalogue, changed: Json, has_notice: bool
 ) -> None:
     def told_of(move: Json, **load: Json) -> bool:
         motion = {"mechanism": RACK | changed, "moves": [move]}
         return "shaft_load_of_motion" in notices(answer({"duty_cycle": {"motion": motion}} | load, catalogue))
 
-    assert told_of(MOVE) is told_of(MOVE, output_load={"axial_N": 9}) is told
+    assert told_of(MOVE) is told_of(MOVE, output_load={"axial_N": 9}) is has_notice
     assert not told_of(MOVE, output_load={"radial_N": 9})
     assert not told_of(MOVE | {"radial_N": 9})
-    if told:
+    if has_notice:
         assert not told_of(MOVE, output_load={"from_motion": True})
 
 
@@ -90,20 +90,20 @@ def radial_of(application: Application) -> list[float]:
 
 
 def test_trying_fewer_newton_metres_keeps_the_load_of_the_motion_as_it_came_out() -> None:
-    asked = Application.model_validate(axis(radial_N=100.0))
-    tried = followed(asked, Way(torque=0.8, load=0.5))
+    application = Application.model_validate(axis(radial_N=100.0))
+    tried = followed(application, Way(torque=0.8, load=0.5))
     assert tried.duty_cycle.motion is None and tried.output_load is not None and not tried.output_load.from_motion
-    assert radial_of(tried) == pytest.approx([load - 50 for load in radial_of(asked)], rel=1e-12)
+    assert radial_of(tried) == pytest.approx([load - 50 for load in radial_of(application)], rel=1e-12)
     assert Application.model_validate(tried.model_dump()) == tried
-    scaled = followed(asked, Way(load=0.5))
+    scaled = followed(application, Way(load=0.5))
     assert scaled.shaft_drive == "rack_and_pinion"
-    assert radial_of(scaled) == pytest.approx([load - 50 for load in radial_of(asked)], rel=1e-12)
+    assert radial_of(scaled) == pytest.approx([load - 50 for load in radial_of(application)], rel=1e-12)
 
 
 def test_a_remedy_names_what_relieves_the_shaft(catalogue: Catalogue) -> None:
     heavy = axis(RACK | {"mass_kg": 300}, MOVE) | {"requirements": {"sizes": ["11A"]}}
     reply = answer(heavy, catalogue)
-    found = candidate(reply, "HPN-11A-5")
-    assert found["governing_check"].startswith("output_bearing")
-    assert found["reserve"]["load_factor"] is None
-    assert found["reserve"]["torque_factor"] == pytest.approx(1 / found["utilisation"], rel=1e-12)
+    result = candidate(reply, "HPN-11A-5")
+    assert result["governing_check"].startswith("output_bearing")
+    assert result["reserve"]["load_factor"] is None
+    assert result["reserve"]["torque_factor"] == pytest.approx(1 / result["utilisation"], rel=1e-12)

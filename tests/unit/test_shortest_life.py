@@ -16,7 +16,7 @@ def loaded(radial_N: float, **conditions: object) -> Json:
 
 
 @pytest.mark.parametrize(
-    ("asked", "of"),
+    ("question", "of"),
     [
         (cycle(phase(40.0, 200.0)), "gear_L10"),
         (loaded(10.0), "gear_L10"),
@@ -24,9 +24,9 @@ def loaded(radial_N: float, **conditions: object) -> Json:
         (loaded(1500.0, life_h=4000.0, life_basis="L10"), "bearing_L10"),
     ],
 )
-def test_the_smaller_life_stands_with_its_basis(asked: Json, of: str, catalogue: Catalogue) -> None:
+def test_the_smaller_life_stands_with_its_basis(question: Json, of: str, catalogue: Catalogue) -> None:
     """The lives themselves are compared with the contract worked out in `tests/property/test_contract.py`."""
-    gear = candidate(answer(asked, catalogue), "HPN-20A-5")
+    gear = candidate(answer(question, catalogue), "HPN-20A-5")
 
     fields = {"gear_L10": "life_L10_h", "bearing_L50": "bearing_life_L50_h", "bearing_L10": "bearing_life_L10_h"}
     judged = [gear["life_L10_h"], *([gear[fields[of]]] if of != "gear_L10" else [])]
@@ -65,7 +65,7 @@ def test_ranking_by_life_goes_by_the_bearing_where_that_wears_out_first(catalogu
 
 
 def test_a_reply_that_was_kept_before_has_no_shortest_life(catalogue: Catalogue) -> None:
-    kept = encode(select(Application.model_validate(loaded(1500.0)), catalogue))
-    before = decode(kept.replace(b'"shortest_life_h"', b'"x"').replace(b'"shortest_life_of"', b'"y"'))
+    record = encode(select(Application.model_validate(loaded(1500.0)), catalogue))
+    before = decode(record.replace(b'"shortest_life_h"', b'"x"').replace(b'"shortest_life_of"', b'"y"'))
 
     assert shortest_life(before.candidates[0]) is None

@@ -40,7 +40,7 @@ def test_without_an_inertia_of_the_load_no_frequency_is_invented(catalogue: Cata
 
 
 @pytest.mark.parametrize(
-    ("phases", "pause_s", "reverses", "span_Nm", "backlash", "told"),
+    ("phases", "pause_s", "reverses", "span_Nm", "backlash", "has_notice"),
     [
         ([40, 20], 0, None, 80, True, True),  # magnitudes: either way
         ([40, 20], 0, False, 20, False, False),
@@ -57,39 +57,39 @@ def test_the_position_error_goes_by_the_torques_between_which_the_gear_winds_up(
     reverses: bool | None,
     span_Nm: float,
     backlash: bool,
-    told: bool,
+    has_notice: bool,
 ) -> None:
-    asked = {} if reverses is None else {"load_reverses": reverses}
-    reply = answer(cycle(*(phase(T, 100) for T in phases), pause_s=pause_s, requirements=asked), catalogue)
+    question = {} if reverses is None else {"load_reverses": reverses}
+    reply = answer(cycle(*(phase(T, 100) for T in phases), pause_s=pause_s, requirements=question), catalogue)
     error = candidate(reply, GEAR)["position_error_arcmin"]
 
     assert error == pytest.approx(8 + math.degrees(span_Nm / 26_000) * 60 + 5 * backlash, rel=1e-12)
-    assert ("torque_signs_not_given" in notices(reply)) == told
+    assert ("torque_signs_not_given" in notices(reply)) == has_notice
 
 
 def test_a_gear_that_is_too_soft_gives_way_to_the_next_and_says_which_inertia_it_would_bear(
     catalogue: Catalogue,
 ) -> None:
-    asked = asking(load_inertia_kgm2=0.8, natural_frequency_Hz=30)
-    reply = answer(asked, catalogue)
-    found = check(reply, GEAR, "natural_frequency")
+    question = asking(load_inertia_kgm2=0.8, natural_frequency_Hz=30)
+    reply = answer(question, catalogue)
+    result = check(reply, GEAR, "natural_frequency")
 
-    assert (found["status"], found["limit"]) == ("fail", 30)
-    assert found["utilisation"] == pytest.approx(30 / 28.692, rel=1e-4)
+    assert (result["status"], result["limit"]) == ("fail", 30)
+    assert result["utilisation"] == pytest.approx(30 / 28.692, rel=1e-4)
     assert reply["selected"] == "HPN-32A-5"
     most = candidate(reply, GEAR)["reserve"]["load_inertia_kgm2"]
     assert most == pytest.approx(26_000 / (2 * math.pi * 30) ** 2, rel=1e-12)
 
 
 @pytest.mark.parametrize(
-    "given", [{"position_error_arcmin": 20}, {"position_error_mm": 1.5, "position_radius_mm": 250}]
+    "inputs", [{"position_error_arcmin": 20}, {"position_error_mm": 1.5, "position_radius_mm": 250}]
 )
-def test_a_position_error_is_judged_as_an_angle_and_its_remedy_holds(catalogue: Catalogue, given: Json) -> None:
-    application = Application.model_validate(asking(**given))
+def test_a_position_error_is_judged_as_an_angle_and_its_remedy_holds(catalogue: Catalogue, inputs: Json) -> None:
+    application = Application.model_validate(asking(**inputs))
     gear = select(application, catalogue).candidate(GEAR)
     assert gear is not None
-    [found] = gear.failing
-    assert found.code == "position_error"
+    [result] = gear.failing
+    assert result.code == "position_error"
     [alternative] = alternatives_of(gear)
     mended = select(tried(application, alternative, catalogue), catalogue).candidate(GEAR)
     assert mended is not None and mended.status == "suitable"
@@ -110,9 +110,9 @@ LOADED = {"radial_N": 600, "axial_N": 200, "radial_position_mm": 45, "axial_radi
 
 def test_a_load_beside_the_shafts_centre_counts_with_its_lever(catalogue: Catalogue) -> None:
     reply = answer(BOTH_WAYS | {"output_load": LOADED | {"shaft_centre_mm": 21}}, catalogue)
-    found = check(reply, GEAR, "output_bearing_load")
+    result = check(reply, GEAR, "output_bearing_load")
 
-    assert (found["status"], found["demand"]) == ("fail", pytest.approx(1.0168, abs=5e-5))
+    assert (result["status"], result["demand"]) == ("fail", pytest.approx(1.0168, abs=5e-5))
     assert "bearing_lever" in notices(reply) and "bearing_load_position" not in notices(reply)
 
 
@@ -146,11 +146,11 @@ def test_a_shafts_centre_of_the_supplement_goes_before_the_one_that_is_given(sup
 def test_a_supplements_inertia_and_torque_without_load_enter_the_motors_figures(supplemented: Supplement) -> None:
     columns = "size,ratio,stages,inertia_kgm2,no_load_torque_Nm,source\n"
     catalogue = supplemented(gears=columns + "20A,5,1,0.0005,0.3,measured\n")
-    asked = asking(
+    question = asking(
         load_inertia_kgm2=0.8,
         motor={"inertia_kgm2": 0.0015, "inertia_ratio": 100, "peak_torque_Nm": 50, "rated_torque_Nm": 50},
     )
-    reply = answer(asked, catalogue)
+    reply = answer(question, catalogue)
     gear = candidate(reply, GEAR)
 
     assert check(reply, GEAR, "inertia_ratio")["demand"] == pytest.approx((0.8 / 25 + 0.0005) / 0.0015, rel=1e-12)
@@ -175,16 +175,16 @@ def test_notice_and_report_say_what_of_a_supplement_the_motor_torques_include(su
         catalogue = supplemented(gears=rows)
         for application, code in ((asking(**motor), still), (moving, turning)):
             selection = select(Application.model_validate(application), catalogue)
-            said = [one for one in selection.notices if one.code in ON_MOTOR_TORQUES]
-            assert [one.code for one in said] == [code]
-            assert on_motor_torques(selection.notices) == said[0].sentence
+            values = [one for one in selection.notices if one.code in ON_MOTOR_TORQUES]
+            assert [one.code for one in values] == [code]
+            assert on_motor_torques(selection.notices) == values[0].sentence
 
 
 # --- Bad input --------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("application", "place", "said"),
+    ("application", "place", "message"),
     [
         (asking(natural_frequency_Hz=25), "requirements.natural_frequency_Hz", "needs a motion"),
         (asking() | {"rank_by": "natural_frequency"}, "rank_by", "needs a motion"),
@@ -216,7 +216,9 @@ def test_notice_and_report_say_what_of_a_supplement_the_motor_torques_include(su
         (BOTH_WAYS | {"output_load": {"radial_N": 9, "shaft_centre_mm": 0}}, "output_load.shaft_centre_mm", "0"),
     ],
 )
-def test_a_question_that_can_not_be_answered_is_refused_at_its_field(application: Json, place: str, said: str) -> None:
+def test_a_question_that_can_not_be_answered_is_refused_at_its_field(
+    application: Json, place: str, message: str
+) -> None:
     errors = refused(application)
     assert place in errors, errors
-    assert said in errors[place]
+    assert message in errors[place]

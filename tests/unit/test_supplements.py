@@ -207,12 +207,12 @@ def test_only_a_gear_with_a_curve_of_its_own_loses_the_torque_reserve_and_only_w
         return candidate(answer(worked_example(requirements=asked), book), designation)["reserve"]["torque_factor"]
 
     assert torque_factor("HPN-20A-5", curved, **motor) is None
-    for designation, asked in (
+    for designation, case in (
         ("HPN-20A-4", motor),
         ("HPN-20A-5", {}),
         ("HPN-20A-5", motor | {"efficiency": 0.9}),
     ):
-        assert torque_factor(designation, curved, **asked) == torque_factor(designation, catalogue, **asked) is not None
+        assert torque_factor(designation, curved, **case) == torque_factor(designation, catalogue, **case) is not None
 
 
 def test_an_efficiency_curve_of_a_supplement_is_followed_between_its_points_and_holds_beyond_its_ends(
@@ -268,9 +268,9 @@ def test_a_file_written_before_a_published_figure_came_still_loads_and_corrects_
     filled = supplemented(accuracy=f"{','.join(cells)}\n{','.join(cells.values())}\n")
 
     gear, printed = filled.by_designation["HPN-20A-5"], catalogue.by_designation["HPN-20A-5"]
-    given = next(name for name in columns[2:4] if name != lacking)
-    assert getattr(gear, given) == float(cells[given])
-    assert gear.sources[given] == "supplied by the user: measured"
+    inputs = next(name for name in columns[2:4] if name != lacking)
+    assert getattr(gear, inputs) == float(cells[inputs])
+    assert gear.sources[inputs] == "supplied by the user: measured"
     assert getattr(gear, lacking) == getattr(printed, lacking)
     assert gear.sources[lacking] == printed.sources[lacking]
 

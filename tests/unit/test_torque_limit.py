@@ -138,11 +138,11 @@ def test_the_calculation_sets_out_the_limit(catalogue: Catalogue) -> None:
 
 
 def told(application: Json, catalogue: Catalogue, designation: str = RATED, language: str = "en") -> list[str]:
-    asked = Application.model_validate(application)
-    found = select(asked, catalogue).candidate(designation)
-    assert found
+    question = Application.model_validate(application)
+    result = select(question, catalogue).candidate(designation)
+    assert result
     reader = Reader(language)
-    lines = torque_limit_of(found, catalogue.by_designation[designation], asked).lines
+    lines = torque_limit_of(result, catalogue.by_designation[designation], question).lines
     return [reader.sentence(line).replace(GROUP, " ") for line in lines]
 
 
@@ -168,8 +168,8 @@ def test_the_line_is_there_in_german(catalogue: Catalogue) -> None:
 def test_a_report_calls_the_torques_at_the_motor_alone_a_lower_bound(catalogue: Catalogue) -> None:
     """Neither the limit of the drive nor the speed with a locked motor, whose names begin like theirs."""
     stop = {"brake": {"torque_Nm": 8}}
-    asked = example(load_inertia_kgm2=0.8, motor={"inertia_kgm2": 0.0015}) | {"emergency_stop": stop}
-    export = Export(Application.model_validate(asked), chosen(asked, catalogue), "/", catalogue=catalogue)
+    question = example(load_inertia_kgm2=0.8, motor={"inertia_kgm2": 0.0015}) | {"emergency_stop": stop}
+    export = Export(Application.model_validate(question), chosen(question, catalogue), "/", catalogue=catalogue)
 
     labels = [str(line["label"]) for line in derived(export.account, Reader())]
     assert any("Torque limit of the drive" in label for label in labels)

@@ -20,10 +20,10 @@ def test_catalogue_has_every_text_and_no_other(code: str) -> None:
 def test_translations_fill_the_same_places(code: str) -> None:
     for message in catalogue(code):
         originals, translated = _listed(message.id), _listed(message.string)
-        wanted = _places(originals[-1]) if originals and originals[-1] else set()
-        for text in translated if wanted else ():
+        expected = _places(originals[-1]) if originals and originals[-1] else set()
+        for text in translated if expected else ():
             # A singular may spell its number out.
-            assert _places(text) | {"num"} == wanted | {"num"}, (originals, text)
+            assert _places(text) | {"num"} == expected | {"num"}, (originals, text)
 
 
 @pytest.mark.parametrize("code", OTHERS)

@@ -16,13 +16,15 @@ from hpn.words.wording import Sentence
 
 
 def typed(name: str, text: str, written: str = "") -> Application | str:
-    given = {"T": "40", "n": "250", "t": "0.3"} | {name: text, "written": written}
-    form = link_reader.parse([*given.items(), ("Tk", given.get("Tk", "50"))] if name != "Tk" else list(given.items()))
+    inputs = {"T": "40", "n": "250", "t": "0.3"} | {name: text, "written": written}
+    form = link_reader.parse(
+        [*inputs.items(), ("Tk", inputs.get("Tk", "50"))] if name != "Tk" else list(inputs.items())
+    )
     return form.application or form.problems[0].message.text
 
 
 @pytest.mark.parametrize(
-    ("text", "kind", "said"),
+    ("text", "kind", "message"),
     [
         ("20.000", "whole", "write 20 or 20000"),
         ("1.230", "whole", "write 1230"),
@@ -31,16 +33,16 @@ def typed(name: str, text: str, written: str = "") -> Application | str:
         ("1" * 61, "whole", "is too long for a number"),
     ],
 )
-def test_a_whole_number_with_a_mark_is_asked_about(text: str, kind: Kind, said: str | int) -> None:
-    found = read_value(text, kind)
-    assert (found.text if isinstance(found, Sentence) else found) == said
+def test_a_whole_number_with_a_mark_is_asked_about(text: str, kind: Kind, message: str | int) -> None:
+    result = read_value(text, kind)
+    assert (result.text if isinstance(result, Sentence) else result) == message
 
 
-@pytest.mark.parametrize(("unit", "said"), [("h", "write 20 h or 20000 h"), ("Nm", "write 20.000 Nm or 20000 Nm")])
-def test_only_hours_are_mostly_whole(unit: str, said: str) -> None:
+@pytest.mark.parametrize(("unit", "message"), [("h", "write 20 h or 20000 h"), ("Nm", "write 20.000 Nm or 20000 Nm")])
+def test_only_hours_are_mostly_whole(unit: str, message: str) -> None:
     entry = Notation({"written": "de"}).entry(f"20.000 {unit}", unit)
     assert isinstance(entry, Entry) and entry.refusal is not None
-    assert entry.refusal.text == said
+    assert entry.refusal.text == message
 
 
 @pytest.mark.parametrize(
@@ -208,12 +210,12 @@ def test_every_figure_that_a_page_prints_is_read_as_that_figure_or_asked_about(v
 def test_each_reading_of_a_number_is_offered_and_taken_with_one_press(
     written: str, name: str, text: str, offers: tuple[str, ...]
 ) -> None:
-    given = [(key, text if key == name else value) for key, value in {"T": "40", "n": "250", "t": "0.3"}.items()]
-    given += [("written", written), ("FR", "5"), ("Tk", "9"), *([] if name == "T" else [(name, text)])]
-    (problem,) = link_reader.parse(given).problems
+    values = [(key, text if key == name else value) for key, value in {"T": "40", "n": "250", "t": "0.3"}.items()]
+    values += [("written", written), ("FR", "5"), ("Tk", "9"), *([] if name == "T" else [(name, text)])]
+    (problem,) = link_reader.parse(values).problems
     assert problem.message.offers == offers
     for offer in offers:
-        form = link_reader.parse([*given, ("do", f"take:{problem.place}:{offer}")])
+        form = link_reader.parse([*values, ("do", f"take:{problem.place}:{offer}")])
         assert form.focus == problem.place
         if not offer.endswith(",000"):  # three decimals are asked about again
             assert form.application is not None, form.problems
@@ -305,5 +307,5 @@ def test_an_unknown_unit_is_none(spelling: str) -> None:
 
 def test_sum_stands_in_its_field_as_it_was_typed() -> None:
     form = link_reader.parse([("T", "=40*2"), ("n", "250"), ("t", "300 ms")])
-    shown = for_reader(form, Reader())
-    assert dict(shown.rows[0]) == {"T": "=40*2", "n": "250", "t": "300 ms"}
+    view = for_reader(form, Reader())
+    assert dict(view.rows[0]) == {"T": "=40*2", "n": "250", "t": "300 ms"}

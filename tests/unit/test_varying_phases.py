@@ -31,8 +31,8 @@ def test_peaks_and_RMS_count_where_they_belong_and_the_means_elsewhere(catalogue
 
 
 def test_a_held_phase_has_a_peak_and_an_RMS_and_no_weight(catalogue: Catalogue) -> None:
-    held = phase(0, 0, 1, peak_torque_Nm=90, rms_torque_Nm=60)
-    reply = answer(cycle(phase(10, 100, 1), held, requirements=GEAR), catalogue)
+    value_held = phase(0, 0, 1, peak_torque_Nm=90, rms_torque_Nm=60)
+    reply = answer(cycle(phase(10, 100, 1), value_held, requirements=GEAR), catalogue)
 
     assert reply["duty"]["average_torque_Nm"] == pytest.approx(10, rel=1e-12)
     assert reply["duty"]["maximum_torque_Nm"] == 90
@@ -42,19 +42,19 @@ def test_a_held_phase_has_a_peak_and_an_RMS_and_no_weight(catalogue: Catalogue) 
 
 def test_figures_of_a_steady_phase_that_are_given_change_not_a_bit(catalogue: Catalogue) -> None:
     plain = [phase(-40.3, 251.7, 0.31), phase(32.1, -500.9, 3.07), phase(19.9, 0, 0.41)]
-    said = [
+    values = [
         entry | {"peak_torque_Nm": abs(entry["torque_Nm"]), "rms_torque_Nm": abs(entry["torque_Nm"])} for entry in plain
     ]
-    for entry in said:
+    for entry in values:
         entry["peak_speed_rpm"] = abs(entry["speed_rpm"])
     wishes = {"motor": {"peak_torque_Nm": 9, "rated_torque_Nm": 5}}
-    one, other = (answer(cycle(*phases, pause_s=1.3, requirements=wishes), catalogue) for phases in (plain, said))
+    one, other = (answer(cycle(*phases, pause_s=1.3, requirements=wishes), catalogue) for phases in (plain, values))
 
     assert one == other
 
 
 @pytest.mark.parametrize(
-    ("changes", "field", "said"),
+    ("changes", "field", "message"),
     [
         ({"peak_torque_Nm": 39.9}, "peak_torque_Nm", "40"),
         ({"peak_speed_rpm": 249}, "peak_speed_rpm", "250"),
@@ -66,10 +66,10 @@ def test_figures_of_a_steady_phase_that_are_given_change_not_a_bit(catalogue: Ca
         ({"peak_speed_rpm": "250"}, "peak_speed_rpm", "number"),
     ],
 )
-def test_a_contradiction_is_refused_where_it_stands(changes: Json, field: str, said: str) -> None:
+def test_a_contradiction_is_refused_where_it_stands(changes: Json, field: str, message: str) -> None:
     errors = refused(cycle(phase(1, 1), phase(-40, 250) | changes))
     assert list(errors) == [("duty_cycle", "phases", 1, field)]
-    assert said in errors["duty_cycle", "phases", 1, field]
+    assert message in errors["duty_cycle", "phases", 1, field]
 
 
 def test_the_bounds_have_room_for_rounding(catalogue: Catalogue) -> None:
@@ -83,9 +83,9 @@ def test_an_efficiency_curve_is_read_at_the_peak_for_the_peak_and_at_the_RMS_for
     supplemented: Supplement,
 ) -> None:
     curve = "size,ratio,torque_Nm,efficiency,source\n20A,5,20,0.7,\n20A,5,80,0.9,\n"
-    asked: dict[str, Any] = {"requirements": GEAR | {"motor": {"peak_torque_Nm": 99}}}
+    question: dict[str, Any] = {"requirements": GEAR | {"motor": {"peak_torque_Nm": 99}}}
     reply = answer(
-        cycle(phase(30, 100, 1, peak_torque_Nm=74, rms_torque_Nm=50), **asked), supplemented(efficiency=curve)
+        cycle(phase(30, 100, 1, peak_torque_Nm=74, rms_torque_Nm=50), **question), supplemented(efficiency=curve)
     )
 
     # 0.7 + 0.2 · 54/60 = 0.88 and 0.7 + 0.2 · 30/60 = 0.8, by hand

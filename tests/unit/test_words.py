@@ -56,8 +56,8 @@ STRAIGHT = re.compile(r"[A-Za-zäöüß]'(?:s|t|re|ve|ll|d)\b")
 
 def strings(messages: Catalog, translated: bool) -> list[str]:
     """Texts of a catalogue, or their translations."""
-    found = [message.string if translated else message.id for message in messages if message.id]
-    return [str(text) for one in found for text in (one if isinstance(one, list | tuple) else [one])]
+    values = [message.string if translated else message.id for message in messages if message.id]
+    return [str(text) for one in values for text in (one if isinstance(one, list | tuple) else [one])]
 
 
 @pytest.fixture(scope="module")
@@ -89,7 +89,7 @@ def test_there_is_one_apostrophe() -> None:
     code = [text for path in sorted(BACKEND.rglob("*.py")) for text in constants(path)]
     pages = [re.sub(r"\{#.*?#\}", "", path.read_text(), flags=re.DOTALL) for path in sorted(TEMPLATES.glob("*.html"))]
     german = strings(catalogue("de"), translated=True)
-    assert [found[0] for text in (*code, *pages, *german) if (found := STRAIGHT.search(text))] == []
+    assert [result[0] for text in (*code, *pages, *german) if (result := STRAIGHT.search(text))] == []
 
 
 @pytest.mark.parametrize("name", ["bm", "Lbb"])

@@ -70,21 +70,21 @@ def _letters(page: Page) -> Letters:
 
 def _digits(instructions: list[Any], letters: Letters) -> list[tuple[int, int, str]]:
     """Digits of a page: instruction, place among its glyphs, and font."""
-    found, font = [], ""
+    result, font = [], ""
     for row, instruction in enumerate(instructions):
         if str(instruction.operator) == "Tf":
             font = str(instruction.operands[0])
         for at, glyph in enumerate(_glyphs(instruction)):
             if letters.get(font, {}).get(glyph, "") in "0123456789" and glyph in letters[font]:
-                found.append((row, at, font))
-    return found
+                result.append((row, at, font))
+    return result
 
 
 def _parts(instruction: Any) -> list[Any]:
     if str(instruction.operator) not in ("Tj", "TJ"):
         return []
-    shown = instruction.operands[0]
-    return list(shown) if isinstance(shown, Array) else [shown]
+    view = instruction.operands[0]
+    return list(view) if isinstance(view, Array) else [view]
 
 
 def _glyphs(instruction: Any) -> list[int]:

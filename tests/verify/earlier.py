@@ -34,13 +34,13 @@ def file_of(version: str, name: str) -> bytes:
     path = FOLDER / version / name
     if path.suffix == ".json":
         return path.read_bytes()
-    told = path.with_name(f"{name}.json").read_text(encoding="utf-8")
+    notice = path.with_name(f"{name}.json").read_text(encoding="utf-8")
     if path.suffix == ".pdf":
-        made = typst.compile(PAGES.encode(), format="pdf", ignore_system_fonts=True, sys_inputs={"told": told})
-        assert isinstance(made, bytes)
-        return made
+        output = typst.compile(PAGES.encode(), format="pdf", ignore_system_fonts=True, sys_inputs={"told": notice})
+        assert isinstance(output, bytes)
+        return output
     packed = BytesIO()
     with ZipFile(packed, "w") as archive:
-        for part, text in json.loads(told).items():
+        for part, text in json.loads(notice).items():
             archive.writestr(part, text)
     return packed.getvalue()

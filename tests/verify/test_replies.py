@@ -27,8 +27,8 @@ def test_an_answer_is_read_by_its_link(catalogue: Catalogue) -> None:
     answer = json.loads(encode(typed_export_of(worked_example(), catalogue).selection))
     assert verify(json.dumps(answer).encode(), catalogue).differs == ()
     answer["duty"]["average_torque_Nm"] *= 1 + 1e-9
-    found = verify(json.dumps(answer).encode(), catalogue).differs
-    assert [(one.place, one.reasons) for one in found] == [("/duty/average_torque_Nm", ("file",))]
+    findings = verify(json.dumps(answer).encode(), catalogue).differs
+    assert [(one.place, one.reasons) for one in findings] == [("/duty/average_torque_Nm", ("file",))]
 
 
 def test_a_value_of_a_notice_and_a_verdict_over_tolerances_are_figures_too(catalogue: Catalogue) -> None:
@@ -37,8 +37,8 @@ def test_a_value_of_a_notice_and_a_verdict_over_tolerances_are_figures_too(catal
     assert verify(json.dumps(answer).encode(), catalogue).differs == ()
     place, notice = next((k, one) for k, one in enumerate(answer["notices"]) if "gear_life_h" in one["values"])
     notice["values"]["gear_life_h"] += 1
-    found = verify(json.dumps(answer).encode(), catalogue).differs
-    assert [one.place for one in found] == [f"/notices/{place}/values/gear_life_h"]
+    findings = verify(json.dumps(answer).encode(), catalogue).differs
+    assert [one.place for one in findings] == [f"/notices/{place}/values/gear_life_h"]
 
 
 OPEN: Json = {"duty_cycle": {"phases": []}}
@@ -48,10 +48,10 @@ def machine_of(catalogue: Catalogue) -> Json:
     """A machine of two axes as `GET /machines/{id}` gives it."""
     common: Json = {"requirements": {"life_h": 20000}}
     own = [worked_example(requirements={"ratios": [5]}), OPEN]
-    asked = [AxisQuestion(resolve(part, common)) for part in own]
+    values = [AxisQuestion(resolve(part, common)) for part in own]
     axes = [
         {"number": place, "application": part, "resolved": one.resolved.whole, "answer": msgspec.to_builtins(answer)}
-        for place, (part, one, answer) in enumerate(zip(own, asked, answers(asked, catalogue), strict=True), 1)
+        for place, (part, one, answer) in enumerate(zip(own, values, answers(values, catalogue), strict=True), 1)
     ]
     return {"title": "Line", "common": common, "axes": axes}
 
@@ -66,8 +66,8 @@ def test_a_machine_is_calculated_axis_by_axis(catalogue: Catalogue) -> None:
     assert [one.place for one in holds] == ["/axes/0/answer/holds"]
     machine["axes"][0]["answer"] |= {"holds": None, "weight_kg": 2.7}
     machine["axes"][0]["resolved"]["requirements"]["life_h"] = 10000
-    found = verify(json.dumps(machine).encode(), catalogue).differs
-    assert {one.place for one in found} == {"/axes/0/answer/weight_kg", "/axes/0/resolved/requirements/life_h"}
+    findings = verify(json.dumps(machine).encode(), catalogue).differs
+    assert {one.place for one in findings} == {"/axes/0/answer/weight_kg", "/axes/0/resolved/requirements/life_h"}
 
 
 def test_a_file_of_a_machine_or_of_two_revisions_is_called_one_and_its_json_is_asked_for(catalogue: Catalogue) -> None:
@@ -80,6 +80,6 @@ def test_a_file_of_a_machine_or_of_two_revisions_is_called_one_and_its_json_is_a
         link = f"{place.format(kind)}/revisions?from=A&to=now"
         compared = DifferencesExport(("A", "now"), (before, after), (catalogue, catalogue), link)
         files.append((changes_pdf.pdf(compared, Reader()), "compares two revisions"))
-    for content, said in files:
-        with pytest.raises(UnreadableFileError, match=f"{said}, of which the JSON alone is calculated again"):
+    for content, message in files:
+        with pytest.raises(UnreadableFileError, match=f"{message}, of which the JSON alone is calculated again"):
             verify(content, catalogue)

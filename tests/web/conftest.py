@@ -38,8 +38,8 @@ def keeping(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """Client of a service with its own empty store."""
     file = tmp_path_factory.mktemp("pairs") / "store.sqlite3"
     app = create_app(Settings(database_url=f"sqlite:///{file}", log_level="error"))
-    with TestClient(app) as found:
-        yield found
+    with TestClient(app) as result:
+        yield result
 
 
 @pytest.fixture(scope="session")

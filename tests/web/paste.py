@@ -24,13 +24,13 @@ def cells(page: str) -> list[str]:
 def chosen(page: str) -> dict[str, str]:
     """Value of each select of a preview; blank for an open question."""
     selects = re.findall(r'<select name="(\w+)".*?</select>', page, re.DOTALL)
-    found = re.findall(r'<select name="(\w+)"[^>]*>.*?<option(?: value="([^"]*)")? selected', page, re.DOTALL)
-    assert len(found) == len(selects)
-    return dict(found)
+    matches = re.findall(r'<select name="(\w+)"[^>]*>.*?<option(?: value="([^"]*)")? selected', page, re.DOTALL)
+    assert len(matches) == len(selects)
+    return dict(matches)
 
 
 def of(page: str) -> str:
     """Digest of the table that the choices of a preview belong to."""
-    found = re.search(r'name="of" value="(\w+)"', page)
-    assert found
-    return found[1]
+    match = re.search(r'name="of" value="(\w+)"', page)
+    assert match
+    return match[1]

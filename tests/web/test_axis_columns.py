@@ -34,9 +34,9 @@ def test_the_unit_of_an_angular_velocity_is_asked_where_nothing_says_it() -> Non
 @pytest.mark.parametrize("form", ["{} {}", "{} [{}]"])
 def test_a_unit_behind_a_name_is_never_taken_for_another(form: str, soak: bool) -> None:
     wrong, count = [], 0
-    for role, held in AXIS_INPUTS.by_role.items():
-        quantity = held.quantity
-        names = {Reader(language).text(held.named.name) for language in LANGUAGES} if quantity else ()
+    for role, value_held in AXIS_INPUTS.by_role.items():
+        quantity = value_held.quantity
+        names = {Reader(language).text(value_held.named.name) for language in LANGUAGES} if quantity else ()
         for name, spelling in product(sorted(names), spellings.SPELLINGS):
             count += 1
             if not soak and count % 10:
@@ -51,7 +51,7 @@ def test_a_unit_behind_a_name_is_never_taken_for_another(form: str, soak: bool) 
 
 
 @pytest.mark.parametrize(
-    ("head", "said"),
+    ("head", "message"),
     [
         ("Wert;Moment [Nm];Drehzahl [1/min];Dauer [s]", "Which column names the axis?"),
         ("Achse;Moment [Nm];Drehzahl [1/min];Wert", "What is column “Wert”?"),
@@ -62,10 +62,10 @@ def test_a_unit_behind_a_name_is_never_taken_for_another(form: str, soak: bool) 
         ("Axis;Torque [Nm];Speed [rpm];Duration [s];utilisation", "What is column “utilisation”?"),
     ],
 )
-def test_a_column_that_nobody_knows_is_asked(head: str, said: str) -> None:
+def test_a_column_that_nobody_knows_is_asked(head: str, message: str) -> None:
     cells = ["A", *"1234"][: head.count(";") + 1]
 
-    assert said in asked(read(head, ";".join(cells)))
+    assert message in asked(read(head, ";".join(cells)))
 
 
 @pytest.mark.parametrize(
@@ -187,9 +187,9 @@ def test_an_inertia_is_read_in_the_unit_of_its_heading_or_cell(unit: str) -> Non
 
 
 def test_an_inertia_in_an_unknown_unit_names_those_that_are_known() -> None:
-    (said,) = asked(read(f"{HEAD};Inertia of the load [kgm]", "A;40;250;1;12"))
+    (message,) = asked(read(f"{HEAD};Inertia of the load [kgm]", "A;40;250;1;12"))
 
-    assert "kgm is not known; known units: kg·m², kg·cm²" in said
+    assert "kgm is not known; known units: kg·m², kg·cm²" in message
 
 
 def test_a_frequency_of_a_speed_is_asked() -> None:

@@ -43,8 +43,8 @@ def machine(client: TestClient) -> str:
 
 
 def axis_of(client: TestClient, place: str) -> Json:
-    found: Json = client.get(f"/api/v1{place}").json()
-    return found
+    reply: Json = client.get(f"/api/v1{place}").json()
+    return reply
 
 
 class Fields(HTMLParser):
@@ -56,16 +56,16 @@ class Fields(HTMLParser):
         self.inside: list[str] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = {name: value or "" for name, value in attrs}
+        by_name = {name: value or "" for name, value in attrs}
         if tag in ("form", "template"):
-            self.inside.append(given.get("id", ""))
-        of_form = self.inside == ["application"] or given.get("form") == "application"
+            self.inside.append(by_name.get("id", ""))
+        of_form = self.inside == ["application"] or by_name.get("form") == "application"
         if tag == "option" and self.inside == ["application"]:
-            if "selected" in given:
-                self.pairs[-1] = (self.pairs[-1][0], given["value"])
-        elif of_form and "name" in given and tag in ("input", "select", "textarea"):
-            is_left_out = given.get("type") in ("checkbox", "radio") and "checked" not in given
-            self.pairs += [] if is_left_out else [(given["name"], given.get("value", ""))]
+            if "selected" in by_name:
+                self.pairs[-1] = (self.pairs[-1][0], by_name["value"])
+        elif of_form and "name" in by_name and tag in ("input", "select", "textarea"):
+            is_left_out = by_name.get("type") in ("checkbox", "radio") and "checked" not in by_name
+            self.pairs += [] if is_left_out else [(by_name["name"], by_name.get("value", ""))]
 
     def handle_endtag(self, tag: str) -> None:
         if tag in ("form", "template"):
@@ -74,9 +74,9 @@ class Fields(HTMLParser):
 
 def fields_of(html: str) -> list[tuple[str, str]]:
     """Fields of the form of a page."""
-    found = Fields()
-    found.feed(html)
-    return found.pairs
+    result = Fields()
+    result.feed(html)
+    return result.pairs
 
 
 def saved(client: TestClient, place: str, html: str, **changed: str) -> Any:
@@ -117,9 +117,9 @@ def test_a_changed_torque_is_saved_back_and_the_next_axis_is_a_link(client: Test
 
     assert saved(client, place, html, T="24").status_code == 303
 
-    found = axis_of(client, place)
-    assert found["application"]["duty_cycle"]["phases"][0]["torque_Nm"] == 24
-    assert found["resolved"]["requirements"]["utilisation"] == 0.9
+    result = axis_of(client, place)
+    assert result["application"]["duty_cycle"]["phases"][0]["torque_Nm"] == 24
+    assert result["resolved"]["requirements"]["utilisation"] == 0.9
     assert axis_of(client, f"{machine}/axes/2")["application"] == OWN
 
 
@@ -144,8 +144,8 @@ def test_a_field_leaves_the_common_value_and_takes_it_again(client: TestClient, 
     assert ("wo", "u") in fields_of(left)
 
     assert saved(client, place, left).status_code == 303
-    found = axis_of(client, place)
-    assert found["without"] == ["requirements.utilisation"] and "utilisation" not in found["resolved"]["requirements"]
+    result = axis_of(client, place)
+    assert result["without"] == ["requirements.utilisation"] and "utilisation" not in result["resolved"]["requirements"]
 
     fields = fields_of(client.get(place).text)
     taken = client.get(f"{place}?{urlencode([*fields, ('do', 'common:u')])}").text
@@ -160,9 +160,9 @@ def test_an_open_axis_opens_and_is_saved_while_it_has_no_cycle(client: TestClien
 
     assert saved(client, place, html.text, name="later", quantity="3").status_code == 303
 
-    found = axis_of(client, place)
-    assert (found["name"], found["quantity"], found["answer"]["status"]) == ("later", 3, "open")
-    assert found["application"] == {"requirements": {"life_h": 1000}}
+    result = axis_of(client, place)
+    assert (result["name"], result["quantity"], result["answer"]["status"]) == ("later", 3, "open")
+    assert result["application"] == {"requirements": {"life_h": 1000}}
 
 
 def test_two_people_on_one_axis_lose_nothing(client: TestClient, machine: str) -> None:
@@ -218,8 +218,8 @@ def test_an_axis_says_which_others_have_its_gear(client: TestClient) -> None:
 
     def said(number: int) -> str:
         page = client.get(f"{machine}/axes/{number}").text
-        found = re.search(r'<section[^>]*aria-labelledby="alike-heading".*?</section>', page, re.DOTALL)
-        return " ".join(re.sub("<[^>]+>", " ", unescape(found[0])).split()) if found else ""
+        match = re.search(r'<section[^>]*aria-labelledby="alike-heading".*?</section>', page, re.DOTALL)
+        return " ".join(re.sub("<[^>]+>", " ", unescape(match[0])).split()) if match else ""
 
     gear = lifts["designation"]
     assert lifts["quantity"] == 21
@@ -272,8 +272,8 @@ def test_a_link_to_another_application_keeps_what_is_inherited() -> None:
     then = pairs(
         {"duty_cycle": {"phases": [phase(10, 300)]}} | {"requirements": {"utilisation": 0.9, "life_h": 10000.0}}
     )
-    found = carried_over(now, then, pairs_of_own(own), {"u", "Lh"})
-    assert found == [("T", "10"), ("n", "300"), ("t", "1"), ("Lh", "10000")]
+    result = carried_over(now, then, pairs_of_own(own), {"u", "Lh"})
+    assert result == [("T", "10"), ("n", "300"), ("t", "1"), ("Lh", "10000")]
     assert ("wo", "Lh") in carried_over(
         now, pairs(own | {"requirements": {"utilisation": 0.9}}), pairs_of_own(own), {"u", "Lh"}
     )

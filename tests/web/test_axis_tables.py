@@ -20,10 +20,10 @@ def test_times_that_go_on_in_every_axis_may_be_points_in_time() -> None:
     head, *rows = "Achse;Moment [Nm];Drehzahl [1/min];Zeit [s]", "A;1;10;1", "A;2;20;3", "B;1;10;2", "B;2;20;5"
 
     assert asked(read(head, *rows)) == ["Are the times durations, starts or ends of the phases?"]
-    said = {times: read(head, *rows, times=times).axes for times in ("durations", "ends", "starts")}
-    assert [axis["duration_s"] for axis in said["durations"]] == [[1, 3], [2, 5]]
-    assert [axis["duration_s"] for axis in said["ends"]] == [[1, 2], [2, 3]]
-    assert [(axis["duration_s"], axis["torque_Nm"]) for axis in said["starts"]] == [([2], [1]), ([3], [1])]
+    by_name = {times: read(head, *rows, times=times).axes for times in ("durations", "ends", "starts")}
+    assert [axis["duration_s"] for axis in by_name["durations"]] == [[1, 3], [2, 5]]
+    assert [axis["duration_s"] for axis in by_name["ends"]] == [[1, 2], [2, 3]]
+    assert [(axis["duration_s"], axis["torque_Nm"]) for axis in by_name["starts"]] == [([2], [1]), ([3], [1])]
     assert asked(read(head, "A;1;10;3", "A;2;20;1", "B;1;10;2")) == []
 
 
@@ -88,8 +88,8 @@ def test_one_axis_does_not_decide_what_the_times_of_the_others_are(other: str) -
     head = "Achse;Moment [Nm];Drehzahl [1/min];Zeit [s]"
 
     assert asked(read(head, *GOING_ON, other)) == ["Are the times durations, starts or ends of the phases?"]
-    said = read(head, *GOING_ON, other, times="ends")
-    assert [axis["duration_s"] for axis in said.axes[:2]] == [[1, 2], [2, 3]]
+    message = read(head, *GOING_ON, other, times="ends")
+    assert [axis["duration_s"] for axis in message.axes[:2]] == [[1, 2], [2, 3]]
     falling = read(head, "A;1;10;3", "A;2;20;1", "B;1;10;2")
     assert offered(falling, "times").chosen == "durations"
 
@@ -111,7 +111,7 @@ SUM = "has no axis, while other rows have one: leave it out if it is a sum, or e
 
 
 @pytest.mark.parametrize(
-    ("head", "rows", "said"),
+    ("head", "rows", "message"),
     [
         (NUMBERED, "1;A;12,5;100;1|2;;8;100;2|1;B;9;100;3", ""),
         (NUMBERED, "1;A;12,5;100;1|2;;8;100;2|1;B;9;100;3|;;29,5;300;6", f"Row 5 {SUM}"),
@@ -122,8 +122,8 @@ SUM = "has no axis, while other rows have one: leave it out if it is a sum, or e
         ("Lfd. Nr.;Achse;Moment [Nm];Drehzahl [1/min];Dauer [s]", "1;A;12,5;100;1|;;8;100;2|2;B;9;100;3", ""),
     ],
 )
-def test_a_row_without_an_axis_that_may_be_a_sum_is_asked(head: str, rows: str, said: str) -> None:
-    assert asked(read(head, *rows.split("|"))) == ([said] if said else [])
+def test_a_row_without_an_axis_that_may_be_a_sum_is_asked(head: str, rows: str, message: str) -> None:
+    assert asked(read(head, *rows.split("|"))) == ([message] if message else [])
 
 
 @pytest.mark.parametrize("name", ["Min-feeder", "Total stacker", "Max", "Summe"])

@@ -24,9 +24,9 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 def section(page: str) -> str:
-    found = re.search(r'<section class="section panel bearing".*?</section>', page, re.DOTALL)
-    assert found
-    return found[0]
+    match = re.search(r'<section class="section panel bearing".*?</section>', page, re.DOTALL)
+    assert match
+    return match[0]
 
 
 def words(part: str) -> str:
@@ -35,9 +35,9 @@ def words(part: str) -> str:
 
 def table(part: str, name: str) -> list[list[str]]:
     """Cells of the table with a caption, row by row; numbers without spaces between thousands."""
-    found = re.search(rf"<table(?:(?!</table>).)*?<caption>\s*{name}.*?</table>", part, re.DOTALL)
-    assert found, name
-    rows = re.findall(r"<tr.*?</tr>", found[0], re.DOTALL)
+    match = re.search(rf"<table(?:(?!</table>).)*?<caption>\s*{name}.*?</table>", part, re.DOTALL)
+    assert match, name
+    rows = re.findall(r"<tr.*?</tr>", match[0], re.DOTALL)
     return [
         [re.sub(r"(?<=\d)\s(?=\d{3})", "", words(cell)) for cell in re.findall(r"<t[hd].*?</t[hd]>", row, re.DOTALL)]
         for row in rows
@@ -68,8 +68,8 @@ def test_the_condition_changes_nothing_else(client: TestClient) -> None:
     edit = client.get(CYCLE + "&at_n=200", headers=EDIT)
 
     assert edit.headers["HX-Push-Url"] == CYCLE
-    asked = client.get(CYCLE + "&at_n=200", headers=EDIT | {"HX-Target": "section#bearing"})
-    assert "200\u202frpm" in unescape(asked.text)
+    response = client.get(CYCLE + "&at_n=200", headers=EDIT | {"HX-Target": "section#bearing"})
+    assert "200\u202frpm" in unescape(response.text)
 
 
 def test_without_script_the_condition_stays_in_the_address(client: TestClient) -> None:
@@ -93,8 +93,10 @@ def test_a_missing_centre_is_asked_for_in_the_title_and_never_a_gear_that_does_n
     page = client.get(BELT, headers={"Accept-Language": language}).text
     head = words(page[page.index('<div class="head">') : page.index('<section class="section" id="overview"')])
 
-    for said in {"en": ("Shaft’s centre x c", "one input is missing", "≥ "), "de": ("Wellenmitte x c", "≥ ")}[language]:
-        assert said in head
+    for message in {"en": ("Shaft’s centre x c", "one input is missing", "≥ "), "de": ("Wellenmitte x c", "≥ ")}[
+        language
+    ]:
+        assert message in head
     for never in ("No gear", "nearest", "Kein Getriebe", "nächst"):
         assert never not in head
 

@@ -51,24 +51,24 @@ class Fields(HTMLParser):
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         """Note a field of the form."""
-        given = {name: value or "" for name, value in attributes}
+        by_name = {name: value or "" for name, value in attributes}
         if tag == "form":
-            self.inside = given.get("id", "")
-            self.method = given["method"] if self.inside == "application" else self.method
-        if self.inside != "application" and given.get("form") != "application":
+            self.inside = by_name.get("id", "")
+            self.method = by_name["method"] if self.inside == "application" else self.method
+        if self.inside != "application" and by_name.get("form") != "application":
             return
         if (
             tag == "input"
-            and given.get("name")
-            and (given.get("type") not in ("checkbox", "radio") or "checked" in given)
+            and by_name.get("name")
+            and (by_name.get("type") not in ("checkbox", "radio") or "checked" in by_name)
         ):
-            self.pairs.append((given["name"], given.get("value", "")))
+            self.pairs.append((by_name["name"], by_name.get("value", "")))
         elif tag == "select":
-            self.select = given["name"]
-        elif tag == "option" and "selected" in given:
-            self.pairs.append((self.select, given["value"]))
+            self.select = by_name["name"]
+        elif tag == "option" and "selected" in by_name:
+            self.pairs.append((self.select, by_name["value"]))
         elif tag == "textarea":
-            self.area = given["name"]
+            self.area = by_name["name"]
             self.pairs.append((self.area, ""))
 
     def handle_endtag(self, tag: str) -> None:
@@ -161,9 +161,9 @@ def test_files_of_a_link_are_of_its_application(api: TestClient, application: Ap
 
 def test_the_csv_of_a_cycle_has_its_phases_with_peaks_and_rms(api: TestClient, application: Application) -> None:
     text = api.get(f"/cycle.csv?{to_link(application).removeprefix('/?')}").text
-    wanted = [tuple(getattr(phase, name) for name in PHASE_FIGURES) for phase in application.duty_cycle.load_phases]
-    found = [tuple(float(cell) if cell else None for cell in phase) for phase in read_text(text).phases]
-    assert found == wanted
+    values = [tuple(getattr(phase, name) for name in PHASE_FIGURES) for phase in application.duty_cycle.load_phases]
+    rows = [tuple(float(cell) if cell else None for cell in phase) for phase in read_text(text).phases]
+    assert rows == values
 
 
 def test_the_command_line_answers_with_the_link(

@@ -216,20 +216,20 @@ def corners(page: str) -> list[list[str]]:
 
 def test_which_load_the_shaft_may_carry_is_answered_at_a_typed_speed_life_and_coefficient(client: TestClient) -> None:
     """The page draws the answer of the API, for input in any units."""
-    asked = {"speed_rpm": 150, "life_h": 30_000, "load_coefficient": 1.3}
-    curves = client.get("/api/v1/bearing-envelopes/20A", params=asked).json()["curves"]
+    question = {"speed_rpm": 150, "life_h": 30_000, "load_coefficient": 1.3}
+    curves = client.get("/api/v1/bearing-envelopes/20A", params=question).json()["curves"]
     plain = client.get("/catalogue/HPN-20A-5", params={"at_n": "150", "at_life": "30000", "at_fw": "1.3"}).text
     typed = {"at_n": "2,5 rev/s", "at_life": "30 000", "at_fw": "1,3", "at_written": "de"}
     german = client.get("/catalogue/HPN-20A-5", params=typed, headers={"Accept-Language": "en"}).text
     reader = Reader()
-    told = [
+    values = [
         [reader.figure(curve["load_coefficient"]), reader.figure(radial, "N"), reader.figure(axial, "N")]
         for curve in curves
         for radial, axial in zip(curve["radial_N"], curve["axial_N"], strict=True)
     ]
-    assert corners(plain) == told
+    assert corners(plain) == values
     assert "150 rpm for a life of 30 000 h" in unescape(plain).replace("\u202f", " ")
-    assert corners(german) == told
+    assert corners(german) == values
 
 
 @pytest.mark.parametrize(

@@ -41,12 +41,12 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 def test_a_page_has_one_description_in_each_language(client: TestClient, path: str) -> None:
     if path == "SAVED":
         path = client.get("/api/v1/selections").json()["selections"][0]["url"]
-    said = []
+    message = []
     for language in ("en", "de"):
         page = client.get(path, headers={"Cookie": f"hpn_language={language}"}).text
         [description] = re.findall('<meta name="description" content="([^"]*)">', page)
-        said.append(unescape(description))
+        message.append(unescape(description))
 
-    english, german = said
+    english, german = message
     assert english != german
-    assert all(40 < len(text) < 200 for text in said)
+    assert all(40 < len(text) < 200 for text in message)

@@ -26,9 +26,9 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 def section(page: str, name: str) -> str:
     """Figure or section of a page by its id."""
-    found = re.search(rf'<(figure|section)[^>]* id="{name}".*?</\1>', page, re.DOTALL)
-    assert found, name
-    return found[0]
+    match = re.search(rf'<(figure|section)[^>]* id="{name}".*?</\1>', page, re.DOTALL)
+    assert match, name
+    return match[0]
 
 
 def phases(part: str, kind: str) -> list[str]:
@@ -97,12 +97,14 @@ def test_data_for_the_plot_library_come_only_when_somebody_unfolds_them(client: 
 
 
 @pytest.mark.parametrize(
-    ("query", "said"),
+    ("query", "message"),
     [("&gear=HPN-40A-5", "This catalogue lacks the bearing limits of HPN-40A"), ("&gear=HPN-40A-5&FR=1", "Not rated.")],
 )
-def test_a_gear_without_limits_has_a_message_in_place_of_the_drawing(client: TestClient, query: str, said: str) -> None:
+def test_a_gear_without_limits_has_a_message_in_place_of_the_drawing(
+    client: TestClient, query: str, message: str
+) -> None:
     figure = section(client.get(EXAMPLE + query).text, "envelope")
-    assert said in unescape(figure)
+    assert message in unescape(figure)
     assert "<svg" not in figure
 
 
@@ -111,9 +113,9 @@ def test_the_digitised_graph_is_offered_only_where_a_supplement_has_points(clien
     settings = Settings(database_url=f"sqlite:///{tmp_path}/s.sqlite3", catalogue_supplement=str(tmp_path))
 
     assert "digitised graph" not in client.get(EXAMPLE).text.partition("_bearing_help")[0].partition("</form>")[0]
-    asked = client.get(EXAMPLE + "&FR=1&bm=digitised")
-    assert '<option value="digitised" selected>digitised graph</option>' in asked.text
-    assert "bearing_envelopes.csv" in asked.text
+    response = client.get(EXAMPLE + "&FR=1&bm=digitised")
+    assert '<option value="digitised" selected>digitised graph</option>' in response.text
+    assert "bearing_envelopes.csv" in response.text
     with TestClient(create_app(settings)) as supplied:
         assert '<option value="digitised">digitised graph</option>' in supplied.get(EXAMPLE).text
         assert 'class="line limit"' in section(supplied.get(EXAMPLE + "&FR=1&bm=digitised").text, "envelope")
@@ -141,8 +143,8 @@ def test_the_saved_page_has_the_chart_of_the_cycle_the_envelope_and_the_life_of_
 def test_the_page_of_a_gear_draws_each_curve_of_the_api_once(client: TestClient, own: float, thin: set[float]) -> None:
     """The requested coefficient is the strong line, also for 1, 1.2 or 1.5."""
     page = client.get(f"/catalogue/HPN-20A-5?at_n=900&at_fw={own}").text
-    asked = {"load_coefficient": own, "speed_rpm": 900}
-    curves = client.get("/api/v1/bearing-envelopes/20A", params=asked).json()["curves"]
+    question = {"load_coefficient": own, "speed_rpm": 900}
+    curves = client.get("/api/v1/bearing-envelopes/20A", params=question).json()["curves"]
 
     assert {curve["load_coefficient"] for curve in curves} == {own, *thin}
     assert page.count('class="line limit"') == 1
@@ -158,8 +160,8 @@ def test_the_page_of_a_gear_says_its_basis_and_draws_nothing_without_limits(clie
 def test_a_cycle_too_long_for_a_link_has_its_plots_too(client: TestClient) -> None:
     rows = "\n".join(f"1 {100 + k % 7} 1 {k % 900} 100" for k in range(600))
     page = client.post("/", data={"phases": rows}).text
-    asked = {"HX-Request": "true", "HX-Target": "details#bearing_figure"}
-    assert "data-figure" in client.post("/", data={"phases": rows}, headers=asked).text
+    question = {"HX-Request": "true", "HX-Target": "details#bearing_figure"}
+    assert "data-figure" in client.post("/", data={"phases": rows}, headers=question).text
     drawn = drawings_in(section(page, "envelope"))
     assert [len(phases(drawing, "mark load")) for drawing in drawn] == [200, 200]
 

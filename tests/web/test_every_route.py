@@ -233,10 +233,10 @@ def test_every_answer_keeps_to_this_host(api: TestClient, answers: dict[str, Any
 
 @pytest.mark.parametrize("path", PATHS)
 def test_answers_about_saved_selections_are_private_and_the_rest_are_not(answers: dict[str, Any], path: str) -> None:
-    kept = answers[path].headers.get("Cache-Control", "")
+    record = answers[path].headers.get("Cache-Control", "")
 
-    assert (kept == "private, no-cache") == (PATHS[path] in ("reading", "listing", "deleting"))
-    assert ("private" in kept) == (kept == "private, no-cache")
+    assert (record == "private, no-cache") == (PATHS[path] in ("reading", "listing", "deleting"))
+    assert ("private" in record) == (record == "private, no-cache")
 
 
 def test_answers_about_a_deleted_or_missing_selection_are_private_too(api: TestClient, saved: str) -> None:
@@ -272,8 +272,8 @@ def test_no_page_has_a_style_or_a_script_of_its_own(api: TestClient, answers: di
     others = [
         api.get(path, headers={"Accept": "text/html"}) for path in (loaded, "/?T=x", "/nowhere", "/selections/none")
     ]
-    found = [*answers.values(), *others]
-    pages = [answer.text for answer in found if answer.headers.get("Content-Type", "").startswith("text/html")]
+    result = [*answers.values(), *others]
+    pages = [answer.text for answer in result if answer.headers.get("Content-Type", "").startswith("text/html")]
 
     assert len(pages) > 8
     for page in pages:

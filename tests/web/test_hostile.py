@@ -159,15 +159,15 @@ def test_no_page_of_the_longest_cycle_has_3_MB(api: TestClient, soak: bool) -> N
     assert len(api.get(saved).content) < 500_000  # including drawings in both sizes and the table of 200 loads
     assert _link(copied.text) == _link(posted.text)
     assert files[0].json()["duty_cycle"]["phases"] == application["duty_cycle"]["phases"]
-    kept = api.post("/selections", data={"link": _link(posted.text), "once": ""}, follow_redirects=False)
-    assert kept.status_code == 303
+    response = api.post("/selections", data={"link": _link(posted.text), "once": ""}, follow_redirects=False)
+    assert response.status_code == 303
 
 
 def _link(page: str) -> str:
     """Link in the form that saves."""
-    found = re.findall(r'name="link" value="(/\?T=[^"]*)"', page)
-    assert len(found) == 1, "each copy is a megabyte"
-    return html.unescape(found[0])
+    matches = re.findall(r'name="link" value="(/\?T=[^"]*)"', page)
+    assert len(matches) == 1, "each copy is a megabyte"
+    return html.unescape(matches[0])
 
 
 @pytest.mark.parametrize("mark", ["", ".", "-"])

@@ -28,8 +28,8 @@ def client() -> Iterator[TestClient]:
 
 def compared(html: str) -> list[str]:
     """Gears of the comparison, from left to right."""
-    found = re.search("Comparison of ([^<]*)", html)
-    return found[1].split(", ") if found else []
+    match = re.search("Comparison of ([^<]*)", html)
+    return match[1].split(", ") if match else []
 
 
 def pins(html: str) -> list[str]:
@@ -140,9 +140,9 @@ def tries(html: str) -> list[str]:
 
 def verdict(html: str) -> tuple[str, str]:
     """Gear and status in the head of the result."""
-    found = re.search(r'<h2 class="designation".*?>(HPN-\w+-\d+)<.*?<span class="status (\w+)"', html, re.DOTALL)
-    assert found
-    return found[1], found[2]
+    match = re.search(r'<h2 class="designation".*?>(HPN-\w+-\d+)<.*?<span class="status (\w+)"', html, re.DOTALL)
+    assert match
+    return match[1], match[2]
 
 
 def test_each_change_of_a_remedy_has_its_own_link_that_makes_the_gear_fit(client: TestClient) -> None:

@@ -179,8 +179,8 @@ def test_a_selection_saved_before_opens_is_found_and_may_be_renamed(api: TestCli
     api.portal.call(state_of(api).store.rename, place.rpartition("/")[2], old)
 
     assert api.get(place).status_code == api.get("/selections").status_code == 200
-    found = api.get(f"/api/v1{place}")
-    assert (found.status_code, found.json()["title"]) == (200, text)
+    response = api.get(f"/api/v1{place}")
+    assert (response.status_code, response.json()["title"]) == (200, text)
     assert len(api.get("/api/v1/selections", params={"reference": text}).json()["selections"]) == 1
     # A form sends both fields: an invalid but unchanged one does not block the other.
     assert api.post(f"{place}/rename", data={"title": "new", "ref": text}, follow_redirects=False).status_code == 303

@@ -26,18 +26,18 @@ def answer_to(query: str, catalogue: Catalogue) -> LiveResult:
 )
 def test_every_candidate_is_listed_once_in_the_order_of_the_reply(catalogue: Catalogue, query: str) -> None:
     answer = answer_to(query, catalogue)
-    listed, given = answer.listed, answer.selection.candidates
+    listed, inputs = answer.listed, answer.selection.candidates
 
     rejected = [candidate for group in listed.rejected for candidate in group.candidates]
-    assert listed.suitable == tuple(c for c in given if c.status == "suitable")
-    assert listed.unrated == tuple(c for c in given if c.status == "unrated" and not c.missing)
-    assert listed.lacking == tuple(c for c in given if c.missing)
-    assert sorted(rejected, key=given.index) == [c for c in given if c.status == "unsuitable"]
-    nearest = [given.index(group.candidates[0]) for group in listed.rejected]
+    assert listed.suitable == tuple(c for c in inputs if c.status == "suitable")
+    assert listed.unrated == tuple(c for c in inputs if c.status == "unrated" and not c.missing)
+    assert listed.lacking == tuple(c for c in inputs if c.missing)
+    assert sorted(rejected, key=inputs.index) == [c for c in inputs if c.status == "unsuitable"]
+    nearest = [inputs.index(group.candidates[0]) for group in listed.rejected]
     assert nearest == sorted(nearest)
     for group in listed.rejected:
         assert {candidate.size for candidate in group.candidates} == {group.size}
-        assert list(group.candidates) == sorted(group.candidates, key=given.index)
+        assert list(group.candidates) == sorted(group.candidates, key=inputs.index)
 
 
 def test_ties_differ_in_nothing_that_ranks_them_but_life(catalogue: Catalogue) -> None:
@@ -74,9 +74,9 @@ def test_the_shortest_life_is_the_gears_or_its_bearings(catalogue: Catalogue, qu
 
 def test_a_life_that_nothing_limits_is_no_shortest_one_beside_another(catalogue: Catalogue) -> None:
     free = answer_to("T=0&n=10&t=1&size=20A", catalogue)
-    held = answer_to("T=0&n=10&t=1&size=20A&FR=500", catalogue)
+    value_held = answer_to("T=0&n=10&t=1&size=20A&FR=500", catalogue)
     unrated = answer_to("T=10&n=10&t=1&size=40A", catalogue)
 
     assert free.account.shortest_life and free.account.shortest_life.life_h is None
-    assert held.account.shortest_life and held.account.shortest_life.check == "output_bearing_life"
+    assert value_held.account.shortest_life and value_held.account.shortest_life.check == "output_bearing_life"
     assert unrated.account.shortest_life is None

@@ -48,12 +48,12 @@ def test_a_link_to_a_motion_says_so(api: TestClient) -> None:
 
 def test_a_saved_motion_is_shown_as_it_was_given_and_its_phases_with_the_digits_of_the_report(api: TestClient) -> None:
     page = api.get(f"/selections/{saved(api, TURNING)}", headers={"Accept-Language": "en"}).text
-    given = page[page.index("Input as saved") : page.index('id="cycle"')]
-    assert re.search(r"<dt>Mechanism\s*</dt><dd>Rotary</dd>", given)
-    assert "0.8\N{NARROW NO-BREAK SPACE}kg·m²" in given
-    assert given.count("<li>") == len(TURNING["moves"])
-    assert "Load phases of the motion" in given
-    numbers = re.findall(r"<td[^>]*>−?([\d.\N{NARROW NO-BREAK SPACE}]+)</td>", given)
+    inputs = page[page.index("Input as saved") : page.index('id="cycle"')]
+    assert re.search(r"<dt>Mechanism\s*</dt><dd>Rotary</dd>", inputs)
+    assert "0.8\N{NARROW NO-BREAK SPACE}kg·m²" in inputs
+    assert inputs.count("<li>") == len(TURNING["moves"])
+    assert "Load phases of the motion" in inputs
+    numbers = re.findall(r"<td[^>]*>−?([\d.\N{NARROW NO-BREAK SPACE}]+)</td>", inputs)
     assert numbers and max(len(re.sub(r"^[0.]+|\D", "", number)) for number in numbers) == DIGITS
 
 

@@ -167,7 +167,7 @@ def test_the_columns_of_a_profile_are_those_that_the_model_lets_it_have() -> Non
                     model.model_validate(added)
                     refused = set()
                 except ValidationError as error:
-                    refused = {found["type"] for found in error.errors()}
+                    refused = {result["type"] for result in error.errors()}
                 assert ("move_has_no" in refused) == (symbol.name not in columns), (profile, symbol.name)
 
 
@@ -224,7 +224,7 @@ def test_a_figure_that_a_move_lacks_is_named_at_its_cell_and_in_the_result(
 
 
 @pytest.mark.parametrize(
-    ("query", "place", "said"),
+    ("query", "place", "message"),
     [
         (f"{TURN}&mj=&mj=0.5", "mj-1", "has no Jerk share: leave it out"),
         (TURN.replace("mt=0.8", "mt=x"), "mt-0", "is not a number"),
@@ -233,12 +233,12 @@ def test_a_figure_that_a_move_lacks_is_named_at_its_cell_and_in_the_result(
     ],
 )
 def test_an_error_of_a_move_stands_below_the_table_and_is_tied_to_its_cell(
-    api: TestClient, query: str, place: str, said: str
+    api: TestClient, query: str, place: str, message: str
 ) -> None:
     page = api.get(f"/?{query}").text
     below = page[page.index('id="duty-errors"') :]
     assert re.search(rf'<a href="#{place}">[^<]*, move 2</a>|<a href="#{place}">[^<]*, move 1</a>', below)
-    assert re.search(rf'id="e-{place}">[^<]*{re.escape(said)}', below)
+    assert re.search(rf'id="e-{place}">[^<]*{re.escape(message)}', below)
     assert re.search(rf'id="{place}"[^>]*aria-invalid="true" aria-describedby="e-{place}"', page)
 
 
@@ -316,8 +316,8 @@ def test_phases_that_come_out_are_taken_over_with_peaks_and_rms_and_give_the_sam
     after = parse(fields_of(page)).application
     assert after is not None
     assert after.duty_cycle.motion is None
-    for typed, found in zip(after.duty_cycle.load_phases, before.duty_cycle.load_phases, strict=True):
-        for name, value in found:
+    for typed, result in zip(after.duty_cycle.load_phases, before.duty_cycle.load_phases, strict=True):
+        for name, value in result:
             assert getattr(typed, name) == (value if value is None else pytest.approx(value, rel=1e-5))
     assert parse(fields_of(pressed(api, urlencode(fields_of(page)), "way:motion"))).application == before
 
@@ -370,9 +370,9 @@ def test_hostile_asides_are_left_alone(api: TestClient) -> None:
 def test_cells_left_blank_show_what_follows(api: TestClient, cookies: str, speed: str, acceleration: str) -> None:
     """90 deg in 0.8 s with a third for each ramp: 168.75 deg/s or 28.125 rpm, 632.8 deg/s2."""
     page = api.get(f"/?{TURN}", headers={"Cookie": cookies}).text
-    shown = dict(re.findall(r'<input id="(\w+-0)"[^>]*placeholder="([^"]*)"', page))
-    assert (shown["mn-0"], shown["ma-0"]) == (speed, acceleration)
-    assert shown["mt-0"] == " "
+    view = dict(re.findall(r'<input id="(\w+-0)"[^>]*placeholder="([^"]*)"', page))
+    assert (view["mn-0"], view["ma-0"]) == (speed, acceleration)
+    assert view["mt-0"] == " "
 
 
 def test_the_governing_check_names_its_move_or_phase(api: TestClient) -> None:

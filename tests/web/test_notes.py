@@ -26,9 +26,9 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 def notes(page: str) -> str:
-    found = re.search(r'<section class="section panel notes".*', page, re.DOTALL)
-    assert found
-    return found[0]
+    match = re.search(r'<section class="section panel notes".*', page, re.DOTALL)
+    assert match
+    return match[0]
 
 
 def test_every_notice_has_its_group_and_says_what_it_touches() -> None:

@@ -65,10 +65,10 @@ def refusals(response: Any, pointer: str) -> list[str]:
     """Errors of the models at a pointer, without those for unknown entries of a catalogue, list or table."""
     assert response.status_code in (200, 201, 404, 413, 422), response.text
     errors = response.json().get("errors", []) if response.status_code in (413, 422) else []
-    found = [error["detail"] for error in errors if error["pointer"] == pointer]
+    values = [error["detail"] for error in errors if error["pointer"] == pointer]
     return [
         text
-        for text in found
+        for text in values
         if not re.match("the catalogue has no|is not a cursor|a+: must be a column and what it is", text)
     ]
 
@@ -144,9 +144,9 @@ def test_each_bound_of_a_motion_is_the_one_that_is_applied(
         if path[:2] == ("moves", 0):  # the figures of a move bound one another
             continue
         # An inertia is also bounded by the gravity mass, so it is tried without one.
-        given = WEIGHTLESS if name == "RotaryMotion" and path[-1:] == ("inertia_kgm2",) else motion
-        for value, allowed in tries(schema, at(given, path)):
-            response = api.post("/api/v1/select", json={"duty_cycle": {"motion": with_value(given, path, value)}})
+        inputs = WEIGHTLESS if name == "RotaryMotion" and path[-1:] == ("inertia_kgm2",) else motion
+        for value, allowed in tries(schema, at(inputs, path)):
+            response = api.post("/api/v1/select", json={"duty_cycle": {"motion": with_value(inputs, path, value)}})
             pointer = "".join(f"/{step}" for step in ("duty_cycle", "motion", *path))
             assert (refusals(response, pointer) == []) is allowed, (pointer, str(value)[:60], response.text[:300])
             tried += 1
@@ -189,11 +189,11 @@ def test_each_bound_of_a_query_is_the_one_that_is_applied(api: TestClient, docum
         for parameter in operation.get("parameters", ()):
             for value, allowed in tries(parameter["schema"], ["a"]) if parameter["in"] == "query" else ():
                 address = path.format(size="20A", designation="HPN-20A-5", id="A" * 22, number=1)
-                given = {parameter["name"]: value}
+                inputs = {parameter["name"]: value}
                 body: Json = {"json": worked_example()} if path.endswith("/select") else CSV if method == "POST" else {}
-                response = api.request(method, address, params=given, **body)
-                found = refusals(response, f"/{parameter['name']}")
-                assert (found == []) is allowed, (path, parameter["name"], value, found)
+                response = api.request(method, address, params=inputs, **body)
+                result = refusals(response, f"/{parameter['name']}")
+                assert (result == []) is allowed, (path, parameter["name"], value, result)
                 tried += 1
     assert tried >= 16
 

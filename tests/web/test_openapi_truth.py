@@ -186,8 +186,8 @@ def test_every_answer_is_in_the_document_with_each_of_its_headers(api: TestClien
             media_type = response.headers.get("content-type", "").partition(";")[0]
             assert not response.content or media_type in entry["content"], (name, response.status_code)
             sent = {header for header in response.headers if header not in OF_HTTP}
-            said = {header.lower() for header in entry["headers"]}
-            assert sent <= said, (name, response.status_code)
+            names = {header.lower() for header in entry["headers"]}
+            assert sent <= names, (name, response.status_code)
 
 
 def test_refusals_that_any_address_may_give_are_in_the_document(service: FastAPI, document: Json) -> None:
@@ -195,18 +195,18 @@ def test_refusals_that_any_address_may_give_are_in_the_document(service: FastAPI
     elsewhere = TestClient(create_app(Settings(allowed_hosts="hpn.example")))
     for method, path, entry in operations(document):
         address = at(path)
-        found = [client.request("TRACE", address), client.request(method, f"{address}/")]
-        assert [answer.status_code for answer in found] == [405, 307], path
+        result = [client.request("TRACE", address), client.request(method, f"{address}/")]
+        assert [answer.status_code for answer in result] == [405, 307], path
         if path not in ("/healthz", "/readyz"):
-            found.append(elsewhere.request(method, address))
-            assert found[-1].status_code == 421
+            result.append(elsewhere.request(method, address))
+            assert result[-1].status_code == 421
             assert "503" in entry["responses"]
-        for answer in found:
-            said = entry["responses"][str(answer.status_code)]
+        for answer in result:
+            message = entry["responses"][str(answer.status_code)]
             media_type = answer.headers.get("content-type", "")
-            assert not answer.content or media_type in said["content"]
+            assert not answer.content or media_type in message["content"]
             assert {name for name in answer.headers if name not in OF_HTTP} <= {
-                name.lower() for name in said["headers"]
+                name.lower() for name in message["headers"]
             }
 
 

@@ -79,9 +79,9 @@ def test_a_file_that_is_no_text_is_refused_in_the_readers_language(client: TestC
 def test_a_cycle_may_come_as_parquet(client: TestClient, script: bool) -> None:
     file, headers = io.BytesIO(), HTMX if script else {}
     pq.write_table(pa.table({"torque_Nm": [40.5, 32], "speed_rpm": [250, 500], "duration_s": [0.3, 3]}), file)
-    shown = client.post("/paste", files={"file": ("cycle.parquet", file.getvalue())}, headers=headers)
-    assert shown.status_code == 200
-    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', shown.text)}
+    response = client.post("/paste", files={"file": ("cycle.parquet", file.getvalue())}, headers=headers)
+    assert response.status_code == 200
+    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', response.text)}
     again = {"file": ("cycle.parquet", file.getvalue() if script else b"")}
 
     reply = client.post("/paste", data={**hidden, "take": "replace"}, files=again, headers=headers)

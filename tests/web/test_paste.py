@@ -78,8 +78,8 @@ def test_a_column_of_remarks_names_the_phases_unless_another_text_does(client: T
 def test_each_column_can_be_read_as_something_else(client: TestClient, headers: dict[str, str]) -> None:
     page = client.post("/paste", data={"link": LINK, "text": GERMAN}, headers=headers)
     choices = chosen(page.text) | {"of": of(page.text), "u2": "ms", "r0": "n", "r1": "T"}
-    asked = client.post("/paste", data={"link": LINK, "text": GERMAN, **choices}, headers=headers)
-    assert chosen(asked.text) == {"r0": "n", "u0": "", "r1": "T", "u1": "", "r2": "t", "u2": "ms"}
+    response = client.post("/paste", data={"link": LINK, "text": GERMAN, **choices}, headers=headers)
+    assert chosen(response.text) == {"r0": "n", "u0": "", "r1": "T", "u1": "", "r2": "t", "u2": "ms"}
     choices |= {"u0": "rpm", "u1": "Nm"}
     again = client.post("/paste", data={"link": LINK, "text": GERMAN, **choices}, headers=headers)
     assert chosen(again.text) == {"r0": "n", "u0": "rpm", "r1": "T", "u1": "Nm", "r2": "t", "u2": "ms"}
@@ -159,23 +159,23 @@ def test_taking_replaces_the_phases_and_keeps_everything_else(client: TestClient
 
 def test_adding_puts_the_phases_behind_those_there(client: TestClient) -> None:
     reply = client.post("/paste", data={"link": LINK, "text": "T\tn\tt\tFR\n5\t10\t1\t300", "take": "append"})
-    given = parse_qs(urlsplit(reply.headers["location"]).query, keep_blank_values=True)
-    assert given["T"] == ["40", "32", "5"]
-    assert given["FRi"] == ["", "", "300"]
+    inputs = parse_qs(urlsplit(reply.headers["location"]).query, keep_blank_values=True)
+    assert inputs["T"] == ["40", "32", "5"]
+    assert inputs["FRi"] == ["", "", "300"]
     assert client.get(reply.headers["location"]).status_code == 200
 
 
 @pytest.mark.parametrize(
-    ("take", "kept"), [("append", ["phases.1.torque_Nm", "torque_Nm"]), ("replace", ["torque_Nm"])]
+    ("take", "remaining"), [("append", ["phases.1.torque_Nm", "torque_Nm"]), ("replace", ["torque_Nm"])]
 )
 def test_the_tolerance_of_a_phase_stays_with_it_and_goes_with_it(
-    client: TestClient, take: str, kept: list[str]
+    client: TestClient, take: str, remaining: list[str]
 ) -> None:
     link = f"{LINK}&tol=T:5p&tol=T.2:10p"
     reply = client.post("/paste", data={"link": link, "text": "T\tn\tt\n5\t10\t1\n6\t20\t1", "take": take})
-    asked = parse(pairs_of(urlsplit(reply.headers["location"]).query)).application
+    question = parse(pairs_of(urlsplit(reply.headers["location"]).query)).application
 
-    assert asked is not None and sorted(asked.tolerances or ()) == kept
+    assert question is not None and sorted(question.tolerances or ()) == remaining
 
 
 @pytest.mark.parametrize(
@@ -271,9 +271,9 @@ def test_no_odd_cell_is_an_error_of_the_server(client: TestClient, column: int) 
         cells = ["1", "2", "3"]
         cells[column] = cell
         text = "\t".join(cells)
-        shown = client.post("/paste", data={"text": text}, headers=HTMX)
+        response = client.post("/paste", data={"text": text}, headers=HTMX)
         taken = client.post("/paste", data={"text": text, "take": "replace"}, follow_redirects=True)
-        assert {shown.status_code, taken.status_code} <= ({422} if cell in NO_NUMBERS else {200, 422}), repr(cell)
+        assert {response.status_code, taken.status_code} <= ({422} if cell in NO_NUMBERS else {200, 422}), repr(cell)
 
 
 def test_cycle_too_long_for_an_address_is_answered_where_it_is_taken(client: TestClient) -> None:
@@ -329,11 +329,11 @@ def test_a_row_of_the_emergency_stop_goes_to_its_torque_and_takes_the_place_of_a
     text = "Phase;T [Nm];n;t [s]\nA;40;250;3\nB;32;500;0.3\nE-stop;-200;250;0.1\nNot-Halt;150;250;0.1"
     page = client.post("/paste", data={"text": text}).text
     fields = {"text": text, "of": of(page), "stop": "stop", "link": "T=1&n=1&t=1&TB=8&tb=0.1&Nk=50&i=5"}
-    shown = client.post("/paste", data=fields).text
+    page_text = client.post("/paste", data=fields).text
     reply = client.post("/paste", data={**fields, "take": "replace"}, follow_redirects=False)
 
     query = query_of(reply.headers["location"])
     assert (query["T"], query["Tk"], query["Nk"], query["i"]) == (["40", "32"], ["-200"], ["50"], ["5"])
     assert not {"TB", "tb"} & query.keys()
-    assert "Row 4 is the emergency stop: −200\u202fNm." in unescape(shown)
-    assert "Row 5 is the emergency stop: 150\u202fNm." in unescape(shown)
+    assert "Row 4 is the emergency stop: −200\u202fNm." in unescape(page_text)
+    assert "Row 5 is the emergency stop: 150\u202fNm." in unescape(page_text)

@@ -30,37 +30,37 @@ def outcome(client: TestClient, case: Case, chosen: dict[str, str]) -> tuple[str
     assert reply.status_code in (200, 303, 422)
     if reply.status_code == 303:
         return "becomes", phases(reply.headers["location"])
-    said = [unescape(text) for text in ASKED.findall(reply.text) for text in text]
+    values = [unescape(text) for text in ASKED.findall(reply.text) for text in text]
     if reply.status_code == 422:
-        return "refused", "".join(said)
-    return "asks", list(filter(None, said))
+        return "refused", "".join(values)
+    return "asks", list(filter(None, values))
 
 
 def phases(location: str) -> str:
-    given = parse_qs(urlsplit(location).query, keep_blank_values=True)
-    said = [name for name in SYMBOLS if name in given and (name != "Tlo" or any(given[name]))]
-    rows = zip(*(given[name] for name in said), strict=True)
+    inputs = parse_qs(urlsplit(location).query, keep_blank_values=True)
+    values = [name for name in SYMBOLS if name in inputs and (name != "Tlo" or any(inputs[name]))]
+    rows = zip(*(inputs[name] for name in values), strict=True)
     figures = "; ".join(" ".join(cell or "-" for cell in row) for row in rows)
-    return f"{figures} named {'; '.join(given['pn'])}" if "pn" in given else figures
+    return f"{figures} named {'; '.join(inputs['pn'])}" if "pn" in inputs else figures
 
 
 def judge(found: tuple[str, str | list[str]], wanted: dict[str, str]) -> None:
-    kind, said = found
-    assert kind in wanted, (kind, said)
+    kind, message = found
+    assert kind in wanted, (kind, message)
     if kind == "becomes":
-        assert said == wanted[kind]
+        assert message == wanted[kind]
     elif kind == "refused":
-        assert wanted[kind] in said
+        assert wanted[kind] in message
     else:
         parts = wanted[kind].split("; ")
-        assert len(parts) == len(said), said
-        assert all(part in question for part, question in zip(parts, said, strict=True)), said
+        assert len(parts) == len(message), message
+        assert all(part in question for part, question in zip(parts, message, strict=True)), message
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_pasted_table_becomes_what_it_says_or_is_asked_about_or_refused(client: TestClient, case: Case) -> None:
-    wanted = {str(kind): case[kind] for kind in ("becomes", "asks", "refused") if kind in case}
-    judge(outcome(client, case, {}), wanted)
+    by_name = {str(kind): case[kind] for kind in ("becomes", "asks", "refused") if kind in case}
+    judge(outcome(client, case, {}), by_name)
     if "chosen" in case:
         then = outcome(client, case, {**case["chosen"], "of": of_table(client, case)})
         after = {"then": "becomes", "asks_then": "asks", "refused_then": "refused"}
@@ -79,9 +79,9 @@ def of_table(client: TestClient, case: Case) -> str:
     reply = client.post(
         "/paste", data={"text": case["text"]}, headers={"Cookie": f"hpn_units={case.get('reader', '')}"}
     )
-    found = re.search(r'name="of" value="(\w+)"', reply.text)
-    assert found, reply.text
-    return found[1]
+    match = re.search(r'name="of" value="(\w+)"', reply.text)
+    assert match, reply.text
+    return match[1]
 
 
 def test_there_are_at_least_150_tables_and_twelve_each_in_french_and_italian() -> None:

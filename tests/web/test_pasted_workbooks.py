@@ -25,15 +25,15 @@ HEADER: list[Cell] = ["Drehmoment [Nm]", "Drehzahl [1/min]", "Dauer [s]"]
 
 def book(*rows: Sequence[Cell], name: str = "Tabelle1", into: Workbook | None = None) -> Workbook:
     """Workbook with a sheet of these rows; a pair is a value with its number format."""
-    made = into or Workbook()
-    sheet = made.create_sheet(name) if into or made.active is None else made.active
+    output = into or Workbook()
+    sheet = output.create_sheet(name) if into or output.active is None else output.active
     sheet.title = name
     for k, row in enumerate(rows, start=1):
         for j, cell in enumerate(row, start=1):
             value, style = cell if isinstance(cell, tuple) else (cell, None)
             written = sheet.cell(k, j, value)
             written.number_format = style or written.number_format
-    return made
+    return output
 
 
 def content(made: Workbook) -> bytes:
@@ -48,8 +48,8 @@ def answer(client: TestClient, file: bytes, **fields: str) -> Any:
 
 
 def taken(reply: Any) -> list[tuple[str, ...]]:
-    given = parse_qs(urlsplit(reply.headers["location"]).query, keep_blank_values=True)
-    return list(zip(*(given[name] for name in ("T", "n", "t", "FRi", "FAi") if name in given), strict=True))
+    inputs = parse_qs(urlsplit(reply.headers["location"]).query, keep_blank_values=True)
+    return list(zip(*(inputs[name] for name in ("T", "n", "t", "FRi", "FAi") if name in inputs), strict=True))
 
 
 def said(reply: Any) -> str:
@@ -117,10 +117,10 @@ def test_cell_that_shows_no_number_is_refused(client: TestClient, cells: list[Ce
 def test_number_that_a_format_shows_in_thousands_is_asked(client: TestClient, number_format: str) -> None:
     file = content(book(["T", "n", "Dauer"], [(40_250, number_format), 250, 3]))
 
-    asked = answer(client, file)
-    assert asked.status_code == 200
-    assert "The workbook shows 40.25 where the cell holds 40250. Which number counts?" in said(asked)
-    of = re.findall(r'name="of" value="(\w+)"', asked.text)[0]
+    question = answer(client, file)
+    assert question.status_code == 200
+    assert "The workbook shows 40.25 where the cell holds 40250. Which number counts?" in said(question)
+    of = re.findall(r'name="of" value="(\w+)"', question.text)[0]
     assert taken(answer(client, file, of=of, scales="shown")) == [("40.25", "250", "3")]
     assert taken(answer(client, file, of=of, scales="held")) == [("40250", "250", "3")]
 
@@ -146,7 +146,7 @@ def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClie
 
 
 @pytest.mark.parametrize(
-    ("cell", "shown"),
+    ("cell", "text"),
     [
         ((40, '0.0 "Nm" "max"'), "40 Nm max"),
         ((40, '[<60]0" Nm";0" kNm";0" mNm"'), '40 [<60]0" Nm";0" kNm";0" mNm"'),
@@ -155,10 +155,10 @@ def test_unit_of_a_format_that_is_none_of_its_column_is_refused(client: TestClie
         (clock(0, 0, 3), "3 s"),
     ],
 )
-def test_a_format_that_may_mean_something_else_is_refused(client: TestClient, cell: Cell, shown: str) -> None:
+def test_a_format_that_may_mean_something_else_is_refused(client: TestClient, cell: Cell, text: str) -> None:
     reply = answer(client, content(book(["T", "n", "Dauer"], [cell, 250, 3])))
     assert reply.status_code == 422
-    assert f"{shown}: this unit does not fit" in said(reply)
+    assert f"{text}: this unit does not fit" in said(reply)
 
 
 def test_time_of_a_cell_is_refused_under_another_unit(client: TestClient) -> None:
@@ -170,22 +170,22 @@ def test_time_of_a_cell_is_refused_under_another_unit(client: TestClient) -> Non
 def test_load_of_a_formula_without_a_value_is_refused_and_a_result_without_characters_is_blank(
     client: TestClient,
 ) -> None:
-    made = content(book([*HEADER, "FR [N]"], [40, 250, 0.3, "=500*2"]))
-    assert "row 2: =500*2 has no calculated value; open and save" in said(answer(client, made))
-    blank = parts(made, lambda name, old: old.replace(b'<c r="D2">', b'<c r="D2" t="str">') if name == SHEET else old)
+    output = content(book([*HEADER, "FR [N]"], [40, 250, 0.3, "=500*2"]))
+    assert "row 2: =500*2 has no calculated value; open and save" in said(answer(client, output))
+    blank = parts(output, lambda name, old: old.replace(b'<c r="D2">', b'<c r="D2" t="str">') if name == SHEET else old)
     assert taken(answer(client, blank)) == [("40", "250", "0.3")]
 
 
 @pytest.mark.parametrize(("cells", "row"), [("D2:D3", 3), ("D2:E2", 2), ("C3:D3", 3)])
 @pytest.mark.parametrize("script", [True, False])
 def test_number_that_is_merged_over_others_is_refused(client: TestClient, cells: str, row: int, script: bool) -> None:
-    made = book([*HEADER, "FR [N]", "FA [N]"], [40, 250, 0.3, 1500, 1], [20, 250, 0.2, None, 1])
-    made.worksheets[0].merge_cells(cells)
-    book([*HEADER], [40, 250, 0.3], name="other", into=made)
-    sheet, whole = {"sheet": "Tabelle1", "take": "replace"}, content(made)  # saving again changes its time
+    output = book([*HEADER, "FR [N]", "FA [N]"], [40, 250, 0.3, 1500, 1], [20, 250, 0.2, None, 1])
+    output.worksheets[0].merge_cells(cells)
+    book([*HEADER], [40, 250, 0.3], name="other", into=output)
+    sheet, whole = {"sheet": "Tabelle1", "take": "replace"}, content(output)  # saving again changes its time
     headers = {"HX-Request": "true"} if script else {}
-    shown = client.post("/paste", files={"file": ("a.xlsx", whole)}, headers=headers)
-    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', shown.text)}
+    response = client.post("/paste", files={"file": ("a.xlsx", whole)}, headers=headers)
+    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', response.text)}
     again = {"file": ("a.xlsx", whole if script else b"")}
     reply = client.post("/paste", data={**hidden, **sheet}, files=again, headers=headers)
     assert reply.status_code == 422
@@ -193,21 +193,21 @@ def test_number_that_is_merged_over_others_is_refused(client: TestClient, cells:
 
 
 def test_row_of_a_table_may_be_several_rows_high(client: TestClient) -> None:
-    made = book(HEADER, [40, 250, 0.3], [None, None, None], [20, 250, 0.2])
+    output = book(HEADER, [40, 250, 0.3], [None, None, None], [20, 250, 0.2])
     for column in "ABC":
-        made.worksheets[0].merge_cells(f"{column}2:{column}3")
-    assert taken(answer(client, content(made))) == [("40", "250", "0.3"), ("20", "250", "0.2")]
+        output.worksheets[0].merge_cells(f"{column}2:{column}3")
+    assert taken(answer(client, content(output))) == [("40", "250", "0.3"), ("20", "250", "0.2")]
 
 
 def test_hidden_rows_and_columns_are_named(client: TestClient) -> None:
-    made = book([*HEADER, "FR [N]"], *([40, 250, 3 - k / 10, 1500] for k in range(9)))
+    output = book([*HEADER, "FR [N]"], *([40, 250, 3 - k / 10, 1500] for k in range(9)))
     for row in (3, 4, 7):
-        made.worksheets[0].row_dimensions[row].hidden = True
+        output.worksheets[0].row_dimensions[row].hidden = True
     for column in ("D", "H"):
-        made.worksheets[0].column_dimensions[column].hidden = True
-    shown = answer(client, content(made), take="").text
-    assert "Rows that are hidden in the workbook are read, too: 3–4, 7." in shown
-    assert "Columns that are hidden in the workbook are read, too: D." in shown
+        output.worksheets[0].column_dimensions[column].hidden = True
+    page_text = answer(client, content(output), take="").text
+    assert "Rows that are hidden in the workbook are read, too: 3–4, 7." in page_text
+    assert "Columns that are hidden in the workbook are read, too: D." in page_text
 
 
 def test_row_far_below_is_no_less_read(client: TestClient) -> None:
@@ -227,36 +227,36 @@ def test_text_with_two_readings_is_asked_in_a_workbook_too(client: TestClient) -
 
 
 def test_torque_merged_over_two_phases_is_refused(client: TestClient) -> None:
-    made = book(HEADER, [40, 250, 0.3], [None, 500, 0.2])
-    made.worksheets[0].merge_cells("A2:A3")
-    reply = answer(client, content(made))
+    output = book(HEADER, [40, 250, 0.3], [None, 500, 0.2])
+    output.worksheets[0].merge_cells("A2:A3")
+    reply = answer(client, content(output))
     assert reply.status_code == 422
     assert "row 3: the cells A2:A3 are merged; write a number into each of them" in said(reply)
 
 
 def test_merged_title_and_heading_are_read(client: TestClient) -> None:
-    made = book(
+    output = book(
         ["Lastzyklus", None, None],
         ["Last", None, "Dauer"],
         ["Drehmoment [Nm]", "Drehzahl [1/min]", "[s]"],
         [40, 250, 0.3],
     )
     for cells in ("A1:C1", "A2:B2"):
-        made.worksheets[0].merge_cells(cells)
-    assert taken(answer(client, content(made))) == [("40", "250", "0.3")]
+        output.worksheets[0].merge_cells(cells)
+    assert taken(answer(client, content(output))) == [("40", "250", "0.3")]
 
 
 def test_name_merged_over_some_columns_is_part_of_their_names(client: TestClient) -> None:
     def merged(name: str, title: str) -> str:
-        made = book(
+        output = book(
             [title, None, None, None],
             [None, name, None, None],
             ["Dauer [s]", "Drehmoment [Nm]", "Drehzahl [1/min]", "Temperatur"],
             [0.3, 4, 2500, 20],
         )
         for cells in ("A1:D1", "B2:C2"):
-            made.worksheets[0].merge_cells(cells)
-        return said(answer(client, content(made)))
+            output.worksheets[0].merge_cells(cells)
+        return said(answer(client, content(output)))
 
     assert "Motorwelle Drehmoment [Nm], Motorwelle Drehzahl [1/min]: named after the motor" in merged(
         "Motorwelle", "Test"
@@ -267,17 +267,17 @@ def test_name_merged_over_some_columns_is_part_of_their_names(client: TestClient
 
 @pytest.mark.parametrize("script", [True, False])
 def test_sheet_is_asked_for_where_several_have_cells(client: TestClient, script: bool) -> None:
-    made = book(HEADER, [40, 250, 0.3], name="Achse 1")
-    book(HEADER, [1.234, 500, 3], name="Achse 2", into=made)
-    made.create_sheet("leer")
-    made.create_sheet("versteckt").append([1, 2, 3])
-    made["versteckt"].sheet_state = "hidden"
+    output = book(HEADER, [40, 250, 0.3], name="Achse 1")
+    book(HEADER, [1.234, 500, 3], name="Achse 2", into=output)
+    output.create_sheet("leer")
+    output.create_sheet("versteckt").append([1, 2, 3])
+    output["versteckt"].sheet_state = "hidden"
     headers = {"HX-Request": "true"} if script else {}
-    file = content(made)
-    shown = client.post("/paste", files={"file": ("a.xlsx", file)}, headers=headers)
-    assert re.findall(r"<option>(.*?)</option>", shown.text) == ["Achse 1", "Achse 2"]
-    assert "Replace phases" not in shown.text
-    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', shown.text)}
+    file = content(output)
+    response = client.post("/paste", files={"file": ("a.xlsx", file)}, headers=headers)
+    assert re.findall(r"<option>(.*?)</option>", response.text) == ["Achse 1", "Achse 2"]
+    assert "Replace phases" not in response.text
+    hidden = {name: unescape(value) for name, value in re.findall(r'name="(of|book)" value="([^"]*)"', response.text)}
     again = {"file": ("a.xlsx", file)} if script else {"file": ("", b"")}  # without script the file is not sent again
     reply = client.post("/paste", data={**hidden, "sheet": "Achse 2", "take": "replace"}, files=again, headers=headers)
     assert taken(reply) == [("1.234", "500", "3")]

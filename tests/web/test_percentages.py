@@ -29,15 +29,15 @@ def words(api: TestClient, address: str, language: str) -> str:
     return re.sub("[ \n]+", " ", html.unescape(re.sub(r"<[^>]+>", "", page)))
 
 
-@pytest.mark.parametrize(("torque", "u", "shown"), NEAR)
-def test_reply_and_page_say_it_alike_in_both_languages(api: TestClient, torque: float, u: float, shown: str) -> None:
+@pytest.mark.parametrize(("torque", "u", "text"), NEAR)
+def test_reply_and_page_say_it_alike_in_both_languages(api: TestClient, torque: float, u: float, text: str) -> None:
     wishes = {"ratios": [5], "sizes": ["20A"], "utilisation": u}
     reply = api.post("/api/v1/select", json=cycle(phase(torque, 50), requirements=wishes)).json()
     gear = candidate(reply, "HPN-20A-5")
     page = f"/?T={torque!r}&n=50&t=1&i=5&size=20A&u={u}"
 
-    assert f" at {shown} % of its limit" in gear["reason"]
-    short = shown.removesuffix(".0")
+    assert f" at {text} % of its limit" in gear["reason"]
+    short = text.removesuffix(".0")
     english, german = (words(api, page, language) for language in ("en", "de"))
     assert re.search(rf"(Largest utilisation ?|average torque \(){re.escape(short)}\u202f%", english)
     assert f"{short.replace('.', ',')}\u202f%" in german

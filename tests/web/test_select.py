@@ -148,28 +148,28 @@ def test_a_mistake_is_a_problem_that_points_at_it(api: TestClient, application: 
 
 
 def test_a_list_that_is_none_is_told_so_in_the_words_of_json(api: TestClient) -> None:
-    found = refused(api, cycle(phase(1, 1), requirements={"ratios": 5}))
+    refusal = refused(api, cycle(phase(1, 1), requirements={"ratios": 5}))
 
-    assert found == {"/requirements/ratios": "must be a list"}
+    assert refusal == {"/requirements/ratios": "must be a list"}
 
 
 def test_several_mistakes_are_reported_at_once(api: TestClient) -> None:
-    found = refused(api, cycle(phase(1, 1) | {"torque_Nm": None}, phase(1, 1, -1), rank_by="price"))
+    refusal = refused(api, cycle(phase(1, 1) | {"torque_Nm": None}, phase(1, 1, -1), rank_by="price"))
 
-    assert set(found) == {"/duty_cycle/phases/0/torque_Nm", "/duty_cycle/phases/1/duration_s", "/rank_by"}
+    assert set(refusal) == {"/duty_cycle/phases/0/torque_Nm", "/duty_cycle/phases/1/duration_s", "/rank_by"}
 
 
 def test_of_very_many_mistakes_the_first_20_are_named_and_the_others_counted(api: TestClient) -> None:
-    found = api.post(PATH, json=cycle(*[phase(1, 1, -1)] * 100)).json()
+    reply = api.post(PATH, json=cycle(*[phase(1, 1, -1)] * 100)).json()
 
-    assert [error["pointer"] for error in found["errors"]] == [f"/duty_cycle/phases/{k}/duration_s" for k in range(20)]
-    assert "100 errors were found" in found["detail"]
+    assert [error["pointer"] for error in reply["errors"]] == [f"/duty_cycle/phases/{k}/duration_s" for k in range(20)]
+    assert "100 errors were found" in reply["detail"]
 
 
 def test_a_mistake_late_in_a_long_cycle_is_told_at_its_place(api: TestClient) -> None:
-    found = refused(api, cycle(*[phase(1, 1)] * 9_998, phase(1, 1, -1)))
+    refusal = refused(api, cycle(*[phase(1, 1)] * 9_998, phase(1, 1, -1)))
 
-    assert set(found) == {"/duty_cycle/phases/9998/duration_s"}
+    assert set(refusal) == {"/duty_cycle/phases/9998/duration_s"}
 
 
 @pytest.mark.parametrize("body", [[], "text", 5, True])
@@ -261,9 +261,9 @@ def test_ten_thousand_phases_are_answered_and_one_more_is_refused(api: TestClien
         # splitting a constant load only changes the rounding of a sum of ten thousand terms
         expected = gear["utilisation"] and pytest.approx(gear["utilisation"], rel=1e-11)
         assert split["utilisation"] == expected
-    found = refused(api, cycle(*[phase(10, 100)] * 10_001))
-    assert list(found) == ["/duty_cycle/phases"]
-    assert "10000" in found["/duty_cycle/phases"]
+    refusal = refused(api, cycle(*[phase(10, 100)] * 10_001))
+    assert list(refusal) == ["/duty_cycle/phases"]
+    assert "10000" in refusal["/duty_cycle/phases"]
 
 
 def test_other_methods_and_content_types_are_refused_as_problems(api: TestClient) -> None:
@@ -320,8 +320,8 @@ def test_every_answer_keeps_to_its_own_host(api: TestClient) -> None:
         assert "script-src" not in policy or "unsafe" not in policy.split("script-src")[1].split(";")[0]
         assert "frame-ancestors 'none'" in policy
         assert reply.headers["referrer-policy"]
-    made = {"text/html", "text/javascript", "image/svg+xml", "application/pdf", "text/plain"}
-    assert kinds == made | {"application/json", "application/problem+json"}
+    output = {"text/html", "text/javascript", "image/svg+xml", "application/pdf", "text/plain"}
+    assert kinds == output | {"application/json", "application/problem+json"}
 
 
 def test_the_same_question_gets_the_same_bytes(api: TestClient) -> None:

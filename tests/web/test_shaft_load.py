@@ -25,10 +25,10 @@ def link_of(**load: Any) -> str:
 
 
 def page(client: TestClient, link: str, language: str = "en", section: str = "bearing") -> str:
-    shown = client.get(link, headers={"Cookie": f"hpn_language={language}"})
-    assert shown.status_code == 200
+    response = client.get(link, headers={"Cookie": f"hpn_language={language}"})
+    assert response.status_code == 200
     part = client.get(link, headers={"Cookie": f"hpn_language={language}", "HX-Request": "true", "HX-Target": section})
-    return html.unescape(shown.text + part.text)
+    return html.unescape(response.text + part.text)
 
 
 def test_the_page_tells_the_load_that_is_not_counted_and_counts_it_at_a_press(client: TestClient) -> None:

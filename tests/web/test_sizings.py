@@ -56,11 +56,11 @@ def test_over_rest_what_can_not_be_read_is_a_422_in_words(api: TestClient, conte
 
 def test_the_page_shows_what_is_not_used_before_it_is_taken(api: TestClient, own: bytes) -> None:
     files = {"file": ("axis.aasx", own, PACKAGE["Content-Type"])}
-    shown = api.post("/paste", files=files, headers={"HX-Request": "true"})
+    response = api.post("/paste", files=files, headers={"HX-Request": "true"})
     without_script = api.post("/paste", files=files)
     taken = api.post("/paste", files=files, data={"take": "all"}, follow_redirects=False)
 
-    for page in (shown, without_script):
+    for page in (response, without_script):
         assert page.status_code == 200
         assert "<li>SizingResult</li>" in page.text
         assert 'name="take" value="all"' in page.text
@@ -68,10 +68,10 @@ def test_the_page_shows_what_is_not_used_before_it_is_taken(api: TestClient, own
 
 
 def test_without_script_the_second_post_takes_what_the_page_has_shown(api: TestClient, own: bytes) -> None:
-    shown = api.post("/paste", files={"file": ("axis.aasx", own)})
+    response = api.post("/paste", files={"file": ("axis.aasx", own)})
     text = json.dumps(Application.model_validate(EVERYTHING).model_dump(mode="json", exclude_none=True))
 
-    assert '"duty_cycle"' in shown.text.replace("&#34;", '"')
+    assert '"duty_cycle"' in response.text.replace("&#34;", '"')
     taken = api.post("/paste", data={"text": text, "take": "all"}, follow_redirects=False)
     assert taken.status_code == 303
 
@@ -91,9 +91,9 @@ def test_the_command_takes_a_package_and_says_what_is_not_used(tmp_path: Path, o
     assert main(["select", str(plain), "--json"]) in (0, 1)
     expected = capsys.readouterr().out
     assert main(["select", str(file), "--json"]) in (0, 1)
-    shown = capsys.readouterr()
-    assert shown.out == expected
-    assert "not used: SizingResult\n" in shown.err
+    output = capsys.readouterr()
+    assert output.out == expected
+    assert "not used: SizingResult\n" in output.err
 
 
 def test_the_command_names_the_file_that_it_can_not_read(tmp_path: Path, capsys: Output) -> None:

@@ -9,11 +9,13 @@ from hpn.web.pages import assets, templates
 
 
 def test_the_build_has_compiled_every_template_as_it_is() -> None:
-    made = templates.environment_of(assets.Assets.load())
-    assert made.bytecode_cache is not None and made.loader is not None
-    for name in made.list_templates():
-        source, path, _ = made.loader.get_source(made, name)
-        assert made.bytecode_cache.get_bucket(made, name, path, source).code is not None, f"{name}: run `make assets`"
+    output = templates.environment_of(assets.Assets.load())
+    assert output.bytecode_cache is not None and output.loader is not None
+    for name in output.list_templates():
+        source, path, _ = output.loader.get_source(output, name)
+        assert output.bytecode_cache.get_bucket(output, name, path, source).code is not None, (
+            f"{name}: run `make assets`"
+        )
 
 
 def test_a_template_that_has_changed_since_is_compiled_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -52,10 +54,10 @@ def test_a_tree_that_has_been_moved_keeps_its_compiled_templates(
         if folder is built:
             templates.compile_all()
             built.rename(moved)
-    made = templates.environment_of(assets.Assets.load())
-    assert made.bytecode_cache is not None and made.loader is not None
-    source, path, _ = made.loader.get_source(made, "page.html")
-    assert made.bytecode_cache.get_bucket(made, "page.html", path, source).code is not None
+    output = templates.environment_of(assets.Assets.load())
+    assert output.bytecode_cache is not None and output.loader is not None
+    source, path, _ = output.loader.get_source(output, "page.html")
+    assert output.bytecode_cache.get_bucket(output, "page.html", path, source).code is not None
 
 
 def test_a_template_is_laid_out_in_lines_that_fit_beside_each_other() -> None:
@@ -75,11 +77,11 @@ def test_the_layout_of_a_template_is_none_of_the_page(tmp_path: Path, monkeypatc
         "  {{ 3 }}\n  <span>kept</span>\n  apart\n</td>\n<pre>\na  b</pre>"
     )
     (tmp_path / "page.html").write_text(laid_out)
-    made = templates.environment_of(assets.Assets.load())
+    output = templates.environment_of(assets.Assets.load())
 
-    assert made.loader is not None
-    source, _, _ = made.loader.get_source(made, "page.html")
+    assert output.loader is not None
+    source, _, _ = output.loader.get_source(output, "page.html")
     assert source.count("\n") == laid_out.count("\n")
-    assert made.get_template("page.html").render() == (
+    assert output.get_template("page.html").render() == (
         '<td class="figure" id="2" title="a b" hidden>3\n<span>kept</span>\napart</td>\n<pre>\na  b</pre>'
     )

@@ -22,8 +22,8 @@ WIDE = worked_example(tolerances=TOLERANCES | {STOP: {"percent": 40}})
 def select(api: TestClient, application: Json, query: str = "") -> Json:
     reply = api.post(PATH + query, json=application)
     assert reply.status_code == 200, reply.text
-    found: Json = reply.json()
-    return found
+    body: Json = reply.json()
+    return body
 
 
 def test_without_tolerances_the_reply_has_none_of_their_fields(api: TestClient) -> None:
@@ -67,8 +67,8 @@ def test_over_tolerance_judges_by_the_worst(api: TestClient) -> None:
 
 
 def test_the_worst_case_has_a_limit_of_its_own(api: TestClient) -> None:
-    asked = {"ratios": [5], "utilisation": 0.8, "worst_case_utilisation": 1.0}
-    reply = select(api, worked_example(tolerances=TOLERANCES, requirements=asked))
+    document = {"ratios": [5], "utilisation": 0.8, "worst_case_utilisation": 1.0}
+    reply = select(api, worked_example(tolerances=TOLERANCES, requirements=document))
 
     assert reply["tolerance"]["holds"]
     assert select(api, reply["tolerance"]["case"])["selected"] == reply["selected"]  # judged by the limit 1, as here
@@ -84,9 +84,9 @@ LEVER: Json = cycle(
 @pytest.mark.parametrize(("u", "of_worst"), [(0.8, 1.0), (1.0, 0.8)])
 def test_a_lower_bound_passes_no_worst_case(api: TestClient, u: float, of_worst: float) -> None:
     """It fails above the limit of the worst case, and is unrated below; u applies only to the nominal case."""
-    asked = {"sizes": ["11A"], "utilisation": u, "worst_case_utilisation": of_worst}
-    nominal = select(api, LEVER | {"requirements": asked})["candidates"][0]
-    by_worst = select(api, LEVER | {"requirements": asked | {"over_tolerance": True}})["candidates"][0]
+    document = {"sizes": ["11A"], "utilisation": u, "worst_case_utilisation": of_worst}
+    nominal = select(api, LEVER | {"requirements": document})["candidates"][0]
+    by_worst = select(api, LEVER | {"requirements": document | {"over_tolerance": True}})["candidates"][0]
 
     assert nominal["status"] == "unrated"
     fails = of_worst < 350 * 1.25 / 480  # F_R,dyn(max) of HPN-11A is 480 N
@@ -110,8 +110,8 @@ def test_a_line_of_a_batch_says_what_select_says(api: TestClient) -> None:
     for item, line in zip(items[:2], lines[:2], strict=True):
         reply = select(api, item)
         worst = reply["candidates"][0]["worst"]
-        told = line["holds"], line["worst_utilisation"], line["worst_governing_check"]
-        assert told == (reply["tolerance"]["holds"], worst["utilisation"], worst["governing_check"])
+        notice = line["holds"], line["worst_utilisation"], line["worst_governing_check"]
+        assert notice == (reply["tolerance"]["holds"], worst["utilisation"], worst["governing_check"])
     assert "holds" not in lines[2]
 
 
@@ -152,11 +152,11 @@ def test_a_link_has_tolerances_and_comes_back_to_the_byte(link: str) -> None:
 def test_a_link_of_a_motion_has_the_tolerance_of_a_move() -> None:
     of_move, of_mechanism = "motion.moves.1.external_torque_Nm", "motion.mechanism.inertia_kgm2"
     tolerances = {of_mechanism: {"percent": 5.0}, of_move: {"absolute": 2.0}}
-    asked = Application.model_validate({"duty_cycle": {"motion": TURNING}, "tolerances": tolerances})
-    link = to_link(asked)
+    question = Application.model_validate({"duty_cycle": {"motion": TURNING}, "tolerances": tolerances})
+    link = to_link(question)
 
     assert link.endswith("&tol=J:5p&tol=mx.2:2")
-    assert link_reader.parse(pairs_of(link[2:])).application == asked
+    assert link_reader.parse(pairs_of(link[2:])).application == question
 
 
 WRONG = {
@@ -206,12 +206,12 @@ def test_a_tolerance_is_typed_in_percent_or_in_a_unit(text: str) -> None:
 
 @pytest.mark.parametrize("reader", [Reader(), Reader("de"), Reader("de", ("lb_in", "degF")), Reader("en", ("lb_ft",))])
 def test_what_a_field_shows_of_a_tolerance_is_read_as_the_same(reader: Reader) -> None:
-    asked = "tol=T:10p&tol=Tk:0.3&tol=tp:0p/15p&tol=fw:0.05&tol=ta:5&tol=T.1:0.7/3p&tol=t.2:0.1"
-    form = link_reader.parse(pairs_of(f"{EXAMPLE}&Tk=100&FR=100&fw=1.2&ta=25&{asked}"))
-    shown = for_reader(form, reader)
-    rows = [(name, text) for row in shown.rows for name, text in row.items()]
+    question = "tol=T:10p&tol=Tk:0.3&tol=tp:0p/15p&tol=fw:0.05&tol=ta:5&tol=T.1:0.7/3p&tol=t.2:0.1"
+    form = link_reader.parse(pairs_of(f"{EXAMPLE}&Tk=100&FR=100&fw=1.2&ta=25&{question}"))
+    view = for_reader(form, reader)
+    rows = [(name, text) for row in view.rows for name, text in row.items()]
     again = link_reader.parse(
-        [*rows, *shown.texts.items(), ("i", "5"), ("written", reader.marker or "en"), ("was", shown.was)]
+        [*rows, *view.texts.items(), ("i", "5"), ("written", reader.marker or "en"), ("was", view.was)]
     )
 
     assert form.application is not None and len(form.application.tolerances or {}) == 7
@@ -259,10 +259,10 @@ def test_exact_puts_tolerances_out_of_count_and_keeps_what_was_typed(api: TestCl
 
 
 def test_who_does_not_ask_for_tolerances_sees_no_field_of_them(api: TestClient) -> None:
-    plain, asked = api.get(f"/?{EXAMPLE}").text, api.get(f"/?{EXAMPLE}&do=tolerances").text
+    plain, case = api.get(f"/?{EXAMPLE}").text, api.get(f"/?{EXAMPLE}&do=tolerances").text
 
     assert "tol_" not in plain.split("<dialog")[0] and "Judge" not in plain
-    assert 'name="tol_T"' in asked and 'name="tols_n"' in asked and 'name="tol_Tk"' in asked
+    assert 'name="tol_T"' in case and 'name="tols_n"' in case and 'name="tol_Tk"' in case
 
 
 def test_the_page_says_whether_the_gear_holds_and_keeps_the_tolerance(api: TestClient) -> None:
@@ -276,10 +276,10 @@ def test_the_page_says_whether_the_gear_holds_and_keeps_the_tolerance(api: TestC
 
 def test_a_saved_selection_keeps_its_tolerances(api: TestClient) -> None:
     saved = api.post("/api/v1/selections", json={"application": WIDE})
-    kept = api.get(saved.headers["Location"]).json()
+    reply = api.get(saved.headers["Location"]).json()
 
-    assert kept["result"]["tolerance"]["holds"] is False
-    assert kept["application"]["tolerances"]["pause_s"] == {"percent": 50}
+    assert reply["result"]["tolerance"]["holds"] is False
+    assert reply["application"]["tolerances"]["pause_s"] == {"percent": 50}
     assert api.get(f"/selections/{saved.json()['id']}").status_code == 200
 
 
@@ -308,8 +308,8 @@ VARYING: Json = TURNED | {"tolerances": {"motion.moves.0.time_s": {"percent": 5}
 def on_the_edge(api: TestClient) -> Json:
     """Motion with a varying time, restricted to its gear, with a limit just above its utilisation for given values."""
     best = select(api, TURNED)["candidates"][0]
-    asked = {"sizes": [best["size"]], "ratios": [best["ratio"]], "utilisation": best["utilisation"] * (1 + 1e-6)}
-    return VARYING | {"requirements": asked}
+    document = {"sizes": [best["size"]], "ratios": [best["ratio"]], "utilisation": best["utilisation"] * (1 + 1e-6)}
+    return VARYING | {"requirements": document}
 
 
 def test_a_sampled_case_that_fails_opens_and_fails(api: TestClient) -> None:
@@ -334,14 +334,14 @@ def test_what_is_sampled_is_the_same_each_time_and_a_bound(api: TestClient) -> N
     assert holding["upper"] == pytest.approx(1 - 0.05 ** (1 / 256), rel=1e-9)
 
 
-@pytest.mark.parametrize(("language", "said"), [("en", "always the same"), ("de", "immer die gleichen")])
+@pytest.mark.parametrize(("language", "message"), [("en", "always the same"), ("de", "immer die gleichen")])
 def test_the_page_says_that_it_is_sampled_and_never_that_nothing_fails(
-    api: TestClient, language: str, said: str
+    api: TestClient, language: str, message: str
 ) -> None:
     link = select(api, VARYING)["link"]
     page = api.get(link, headers={"HPN-Parts": "tolerance", "Accept-Language": language}).text
     of_share = page.partition("share-of-cases")[2].partition("</p>")[0]
 
-    assert said in page and "≈" in page
+    assert message in page and "≈" in page
     assert "1.2" in of_share or "1,2" in of_share  # 1 - 0.05^(1/256), rounded up
     assert not re.search(r"[^0-9.,]0\s?%", of_share)

@@ -29,8 +29,8 @@ WITHIN = re.compile(r'name="(\w+)"\s+type="text"[^>]*aria-label="[^"]* in ([^" ]
 
 def printed(page: str) -> set[tuple[str, str]]:
     """Names of a page's fields, each with the unit beside it, or in tables within its label."""
-    found = [*BESIDE.findall(page), *WITHIN.findall(page)]
-    return {(name, unescape(unit).strip()) for name, unit in found if unit.strip()}
+    result = [*BESIDE.findall(page), *WITHIN.findall(page)]
+    return {(name, unescape(unit).strip()) for name, unit in result if unit.strip()}
 
 
 def typed(name: str, text: str, marker: str, mechanism: str) -> str:
@@ -111,7 +111,7 @@ def test_the_bodies_take_their_units_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "said"),
+    ("name", "text", "message"),
     [
         ("K3", "26000 Nm", "Nm/rad"),
         ("ma", "900 °/s", "°/s²"),
@@ -120,11 +120,11 @@ def test_the_bodies_take_their_units_too() -> None:
         ("u", "1 rad", "must be a number without a unit"),
     ],
 )
-def test_a_unit_of_another_quantity_is_refused_with_those_there_are(name: str, text: str, said: str) -> None:
+def test_a_unit_of_another_quantity_is_refused_with_those_there_are(name: str, text: str, message: str) -> None:
     wire = Notation({"written": "en"}).entry(text, units_of("rotary")[name])
     assert isinstance(wire, Entry)
     assert isinstance(wire.refusal, Sentence)
-    assert said in wire.refusal.text
+    assert message in wire.refusal.text
 
 
 def test_a_form_with_years_is_an_application_with_their_hours_and_the_page_says_how_many(client: TestClient) -> None:

@@ -70,15 +70,15 @@ class Texts(HTMLParser):
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         """Note attributes, and skip the content of elements without prose."""
-        given = dict(attributes)
+        inputs = dict(attributes)
         if tag in ("script", "style", "var", "math", "code", "pre", "kbd", "sub"):
             self.open.append(tag)
         if (
             tag != "link"
-            and "property" not in given
-            and given.get("name") not in ("viewport", "color-scheme", "theme-color", "robots", "htmx-config")
+            and "property" not in inputs
+            and inputs.get("name") not in ("viewport", "color-scheme", "theme-color", "robots", "htmx-config")
         ):
-            self.found += [str(given[name]) for name in SHOWN if given.get(name)]
+            self.found += [str(inputs[name]) for name in SHOWN if inputs.get(name)]
 
     def handle_endtag(self, tag: str) -> None:
         """End the skipping of an element's content."""

@@ -53,16 +53,16 @@ class Ways(HTMLParser):
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, Any]]) -> None:
         """Note a way, or a field of one."""
-        given = dict(attributes)
-        if tag == "a" and "href" in given:
-            parts = urlsplit(given["href"])
+        inputs = dict(attributes)
+        if tag == "a" and "href" in inputs:
+            parts = urlsplit(inputs["href"])
             self.found.append((parts.path, [name for name, _ in parse_qsl(parts.query, True)]))
         if tag == "form":
-            self._form = [] if given.get("method") == "get" else None
+            self._form = [] if inputs.get("method") == "get" else None
             if self._form is not None:
-                self.found.append((given["action"], self._form))
+                self.found.append((inputs["action"], self._form))
         if tag == "input" and self._form is not None:
-            self._form.append(given.get("name", ""))
+            self._form.append(inputs.get("name", ""))
 
 
 @pytest.mark.parametrize("address", PAGES)

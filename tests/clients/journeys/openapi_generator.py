@@ -10,7 +10,7 @@ def journey(address: str, cycle: dict[str, Any], motion: dict[str, Any]) -> dict
     """Answers that its user sees."""
     package: Any = importlib.import_module("hpn_client")
     with package.ApiClient(package.Configuration(host=address)) as client:
-        selection, kept = package.SelectionApi(client), package.SavedSelectionsApi(client)
+        selection, record = package.SelectionApi(client), package.SavedSelectionsApi(client)
 
         def refusal(call: Any, **arguments: Any) -> Any:
             try:
@@ -22,9 +22,11 @@ def journey(address: str, cycle: dict[str, Any], motion: dict[str, Any]) -> dict
         turning = package.Motion(package.RotaryMotion.from_dict(motion))
         moved = package.Application(duty_cycle=package.DutyCycle(motion=turning))
         request = package.SaveRequest(application=application, title="Axis 7", reference="python generator")
-        saved, again = (kept.save_selection(save_request=request, idempotency_key="python-generator") for _ in range(2))
-        selected, read = selection.select(application), kept.get_selection(saved.id)
-        listed = kept.list_selections(reference="python generator")
+        saved, again = (
+            record.save_selection(save_request=request, idempotency_key="python-generator") for _ in range(2)
+        )
+        selected, read = selection.select(application), record.get_selection(saved.id)
+        listed = record.list_selections(reference="python generator")
         lives = [one.candidates[0].life_l10_h for one in (selected, read.result)]
         return {
             "selected": selected.selected,
@@ -32,11 +34,11 @@ def journey(address: str, cycle: dict[str, Any], motion: dict[str, Any]) -> dict
             "phases": len(selection.select(moved).duty.phases),
             "saved once": saved.id == again.id,
             "listed": [line.title for line in listed.selections],
-            "renamed": kept.rename_selection(saved.id, package.Names(title="Axis 8")).title,
+            "renamed": record.rename_selection(saved.id, package.Names(title="Axis 8")).title,
             "read": read.result.selected,
-            "deleted": kept.delete_selection_with_http_info(saved.id).status_code,
-            "missing": refusal(kept.get_selection, id=saved.id).status,
-            "refused": refusal(kept.list_selections, cursor="x").errors[0].pointer,
+            "deleted": record.delete_selection_with_http_info(saved.id).status_code,
+            "missing": refusal(record.get_selection, id=saved.id).status,
+            "refused": refusal(record.list_selections, cursor="x").errors[0].pointer,
         }
 
 
