@@ -126,7 +126,7 @@ def test_every_axis_gets_what_select_answers(suffix: str, form: str, fleet: Flee
             assert all(value is None for name, value in row.items() if name not in ("axis", "error")), row
         else:
             assert row == target
-    refused = {axis for axis, wanted in fleet.wanted.items() if target["error"]}
+    refused = {axis for axis, target in fleet.wanted.items() if target["error"]}
     assert {row["axis"] for row in read(tmp_path / "rejected.parquet")} == refused
 
 
