@@ -291,6 +291,14 @@ def test_no_text_lies_over_another_and_each_stays_inside(
     assert markup(drawing) == markup(drawing_of(picture, reader))
 
 
+def test_a_load_without_room_for_its_number_covers_no_number_of_the_same_place() -> None:
+    phases = [phase(1, 100, radial_N=900 + 0.001 * k, axial_N=300) for k in range(40)]
+    drawn = Shown(drawing_of(picture_of(subject_of(cycle(*phases)))))
+    groups = [(group.find("rect[@class='disc']"), group.find("circle")) for group in drawn.of("g", "mark")]
+    assert sum(disc is None for disc, _ in groups) > 1
+    assert [dot for (disc, _), (_, dot) in combinations(groups, 2) if _is_over(dot, disc)] == []
+
+
 @pytest.mark.parametrize("count", [1, 7, 24])
 def test_loads_apart_from_each_other_all_have_their_number(count: int) -> None:
     phases = [phase(1, 100, radial_N=60 + 65.0 * (k % 24), axial_N=200.0 * (1 + k % 3)) for k in range(count)]

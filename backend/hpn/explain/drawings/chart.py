@@ -280,12 +280,12 @@ def _marks(drawing: Element, frame: Frame, marks: Sequence[Mark], places: LabelR
         size = _size(mark)
         spot = places.first(around(dot.centre, *size))
         places.boxes = [*boxes, *([spot] if spot else [])]
-        if spot and spot.centre == dot.centre:
-            centred.append(dot)
-        elif spot and any(_apart(other, dot) <= SAME for other in centred):
-            groups[place].remove(circles[place])  # it would cover the number of that disc
         if spot:
             _disc(groups[place], leaders, mark, dot.centre, spot)
+            centred += [dot] if spot.centre == dot.centre else []
+    for group, circle, dot in zip(groups, circles, dots, strict=True):
+        if any(other is not dot and _apart(other, dot) <= SAME for other in centred):
+            group.remove(circle)  # it would cover the number of that disc
     places.boxes += dots
 
 
