@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     catalogue = Gears.of
 
-ENGINE_VERSION = "1.2.0"
+ENGINE_VERSION = "1.3.0"
 
 __all__ = ["ENGINE_VERSION", "Answer", "ApplicationError", "Gears", "catalogue", "report", "select", "size"]
 
