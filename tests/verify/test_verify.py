@@ -45,7 +45,7 @@ MAKERS: dict[str, Callable[..., bytes]] = {
 
 @pytest.fixture(scope="module", autouse=True)
 def each_file_read_once() -> Iterator[None]:
-    """What is compared is mostly the same file made again, which pypdf takes longest to read."""
+    """Shares the reading of a file: most are compared with the same file made again, and pypdf takes longest."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Format, "lines", cache(Format.lines))
         yield
